@@ -1,0 +1,27 @@
+//! The cloud of material points, sorted by cell.
+
+/// Material points: for each cell a run of points with their parent coordinates.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Cloud {
+    /// Points of cell c are `first[c]..first[c + 1]` (length: cells + 1).
+    pub first: Vec<usize>,
+    /// Parent coordinates xi in [0, 1]^2 of each point.
+    pub xi: Vec<[f64; 2]>,
+}
+
+impl Cloud {
+    /// Parent coordinates of the points of a cell.
+    pub fn of(&self, cell: usize) -> &[[f64; 2]] {
+        &self.xi[self.first[cell]..self.first[cell + 1]]
+    }
+
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.xi.len()
+    }
+
+    /// Whether there is no point at all.
+    pub fn is_empty(&self) -> bool {
+        self.xi.is_empty()
+    }
+}

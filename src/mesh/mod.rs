@@ -1,0 +1,55 @@
+//! Quadrilateral meshes: geometry and groups only; a mesh knows nothing of a solver.
+
+/// A mesh of bilinear quadrilaterals in the initial configuration, in metres.
+///
+/// Corner `k` of a cell has the parent coordinates (0,0), (1,0), (1,1), (0,1) for k = 0..4, and the
+/// corners run counter-clockwise. Local faces: 0 is xi1 = 0 (corners 0, 3), 1 is xi1 = 1 (corners 1, 2),
+/// 2 is xi2 = 0 (corners 0, 1), 3 is xi2 = 1 (corners 3, 2); a face is run through in the direction of
+/// its increasing parent coordinate.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mesh {
+    /// Node coordinates X, in m.
+    pub nodes: Vec<[f64; 2]>,
+    /// The four nodes of each cell, counter-clockwise.
+    pub cells: Vec<[usize; 4]>,
+    /// For each cell the index of its group in [`Mesh::groups`].
+    pub cell_group: Vec<usize>,
+    /// Names of the cell groups (physical surfaces).
+    pub groups: Vec<String>,
+    /// The boundary edges that bear a group.
+    pub edges: Vec<BoundaryEdge>,
+    /// Names of the boundary groups (physical curves).
+    pub edge_groups: Vec<String>,
+    /// Number of each cell in the file that it came from (for messages and output).
+    pub original: Vec<u64>,
+}
+
+/// A boundary edge: local face `face` of cell `cell` belongs to boundary group `group`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BoundaryEdge {
+    /// The cell.
+    pub cell: usize,
+    /// Its local face, 0..4.
+    pub face: usize,
+    /// Index in [`Mesh::edge_groups`].
+    pub group: usize,
+}
+
+/// Corners (first, last) of local face f, in the direction of increasing parent coordinate.
+pub const FACE_CORNERS: [[usize; 2]; 4] = [[0, 3], [1, 2], [0, 1], [3, 2]];
+
+/// What lies on the other side of a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Link {
+    /// Another cell's face; `flip` where the two run in opposite directions.
+    Cell {
+        /// The other cell.
+        cell: usize,
+        /// Its local face.
+        face: usize,
+        /// Whether the faces run in opposite directions.
+        flip: bool,
+    },
+    /// The boundary group with this index in [`Mesh::edge_groups`].
+    Boundary(usize),
+}
