@@ -12,8 +12,12 @@
 
 pub mod error;
 pub mod lane;
+pub mod tensor;
 pub mod mesh;
 pub mod cloud;
+pub mod material;
+pub mod riemann;
+pub mod boundary;
 pub mod io;
 pub mod scene;
 pub mod cli;

@@ -1,0 +1,62 @@
+//! Boundary conditions as star states (v*, t*) of a face point, for every interface flux.
+//!
+//! A new condition is one file with a type that implements [`Boundary`] and its line in the scene's registry.
+
+mod absorbing;
+mod free;
+mod traction;
+mod velocity;
+mod wall;
+
+pub use absorbing::Absorbing;
+pub use free::Free;
+pub use traction::Traction;
+pub use velocity::Velocity;
+pub use wall::Wall;
+
+use crate::riemann::{Impedance, Trace, current_normal};
+use std::sync::Arc;
+
+/// A number that a user prescribes over reference coordinates X (m) and time (s).
+pub type Data = Arc<dyn Fn([f64; 2], f64) -> f64 + Send + Sync>;
+
+/// A time node of a step and its weight: data that depends on time enters as sum_s w_s (.)(X, t_s).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeNode {
+    /// Time t_n + tau_s dt, in s.
+    pub time: f64,
+    /// Weight w_s; the weights sum to 1.
+    pub weight: f64,
+}
+
+/// A point of a boundary face.
+#[derive(Debug, Clone, Copy)]
+pub struct FacePoint {
+    /// Reference coordinates X, m.
+    pub x: [f64; 2],
+    /// Unit outward normal N in the initial configuration.
+    pub normal: [f64; 2],
+    /// rho0 of the cell, kg/m^3.
+    pub density: f64,
+}
+
+impl FacePoint {
+    /// Z with the current normal and speeds of the inside.
+    pub fn impedance(&self, inside: &Trace<f64>) -> Impedance<f64> {
+        Impedance::new(inside.c, self.density, current_normal(inside.f, inside.f, self.normal))
+    }
+}
+
+/// A boundary condition. Conditions with a memory (a gap) keep it in the state, not here.
+pub trait Boundary: Send + Sync {
+    /// Flux*.N at a face point, in the order of U.
+    fn flux(&self, inside: &Trace<f64>, at: &FacePoint, times: &[TimeNode]) -> [f64; 6];
+}
+
+/// sum_s w_s data(X, t_s).
+fn mean(data: &Data, x: [f64; 2], times: &[TimeNode]) -> f64 {
+    times.iter().map(|node| node.weight * data(x, node.time)).sum()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,44 @@
+//! Acoustic (linearised Godunov) fluxes.
+
+use super::{Impedance, Riemann, Trace, add_tangential, current_normal, star, tangent};
+use crate::lane::Lane;
+use crate::tensor;
+
+/// v* = mean v + 1/2 Z^-1 (t^+ - t^-), t* = mean t + 1/2 Z (v^+ - v^-), Z with the larger current speeds.
+#[derive(Debug, Clone, Copy)]
+pub struct Acoustic;
+
+/// [`Acoustic`] with -c_p/2 ([F] T) (x) T added to Flux*_F, which damps the jumps that are no gradients.
+#[derive(Debug, Clone, Copy)]
+pub struct AcousticCurl;
+
+impl Riemann for Acoustic {
+    #[inline(always)]
+    fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6] {
+        let half = L::splat(0.5);
+        let c = [minus.c[0].max(plus.c[0]), minus.c[1].max(plus.c[1])];
+        let z = Impedance::new(c, density, current_normal(minus.f, plus.f, n));
+        let dv = z.solve([plus.t[0] - minus.t[0], plus.t[1] - minus.t[1]]);
+        let dt = z.times([plus.v[0] - minus.v[0], plus.v[1] - minus.v[1]]);
+        let v = std::array::from_fn(|i| half * (minus.v[i] + plus.v[i] + dv[i]));
+        let t = std::array::from_fn(|i| half * (minus.t[i] + plus.t[i] + dt[i]));
+        star(v, t, n)
+    }
+}
+
+impl Riemann for AcousticCurl {
+    #[inline(always)]
+    fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6] {
+        let mut flux = Acoustic.flux(minus, plus, n, density);
+        add_tangential(&mut flux, curl_penalty(minus, plus, n), n);
+        flux
+    }
+}
+
+/// -c/2 [F] T with the larger current c_p.
+#[inline(always)]
+pub(super) fn curl_penalty<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, n: [L; 2]) -> [L; 2] {
+    let c = L::splat(-0.5) * minus.c[0].max(plus.c[0]);
+    let jump: [L; 4] = std::array::from_fn(|k| plus.f[k] - minus.f[k]);
+    tensor::times(jump, tangent(n)).map(|a| c * a)
+}

@@ -1,0 +1,26 @@
+//! The flux between two materials, whatever the flux elsewhere: [F] N jumps physically there.
+
+use super::acoustic::curl_penalty;
+use super::{Impedance, Trace, add_tangential, current_normal, star};
+use crate::lane::Lane;
+
+/// v* = (Z^- + Z^+)^-1 (Z^- v^- + Z^+ v^+ + t^+ - t^-), t* = t^- + Z^- (v* - v^-), and -c/2 ([F] T) (x) T.
+///
+/// Z^-, Z^+ from each side's own speeds and density (kg/m^3). Both share the current normal n, so that
+/// Z^- + Z^+ is again an impedance. Never Rusanov there: two densities in uniform motion would give a false stress.
+#[inline(always)]
+pub fn interface<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: [L; 2]) -> [L; 6] {
+    let normal = current_normal(minus.f, plus.f, n);
+    let own = Impedance::new(minus.c, density[0], normal);
+    let other = Impedance::new(plus.c, density[1], normal);
+    let both = [0, 1].map(|k| density[0].mul_add(minus.c[k], density[1] * plus.c[k]));
+    let sum = Impedance::new(both, L::splat(1.0), normal);
+    // Relative to v^-, so that uniform motion gives exactly v^-.
+    let dv = [plus.v[0] - minus.v[0], plus.v[1] - minus.v[1]];
+    let drive = other.times(dv);
+    let step = sum.solve([drive[0] + (plus.t[0] - minus.t[0]), drive[1] + (plus.t[1] - minus.t[1])]);
+    let dt = own.times(step);
+    let mut flux = star([minus.v[0] + step[0], minus.v[1] + step[1]], [minus.t[0] + dt[0], minus.t[1] + dt[1]], n);
+    add_tangential(&mut flux, curl_penalty(minus, plus, n), n);
+    flux
+}

@@ -1,0 +1,134 @@
+//! Two-sided interface fluxes (3): Flux*.N of dU/dt + d Flux_a / dX_a = 0 at a point of a face.
+//!
+//! A new flux is one file with a type that implements [`Riemann`] and one line in [`Flux`].
+
+mod acoustic;
+mod interface;
+mod rusanov;
+
+pub use acoustic::{Acoustic, AcousticCurl};
+pub use interface::interface;
+pub use rusanov::Rusanov;
+
+use crate::lane::Lane;
+use crate::tensor;
+
+/// What a cell shows at a point of its face.
+#[derive(Debug, Clone, Copy)]
+pub struct Trace<L> {
+    /// Deformation gradient.
+    pub f: [L; 4],
+    /// Velocity, m/s.
+    pub v: [L; 2],
+    /// Traction t = P N, Pa, with the N of the side from which the face is looked at.
+    pub t: [L; 2],
+    /// Current speeds c_p, c_s of the acoustic tensor B(N), m/s.
+    pub c: [L; 2],
+}
+
+/// Numbers in a [`Trace`], in the order f, v, t, c.
+pub const TRACE: usize = 10;
+
+/// An interface flux. The normal N is the unit outward normal of '-' in the initial configuration.
+pub trait Riemann {
+    /// Flux*.N in the order of U: [F11, F12, F21, F22, p1, p2]; `density` is rho0 of both sides.
+    fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6];
+}
+
+/// The registry of fluxes: chosen per batch of blocks by one `match`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flux {
+    /// Local Lax-Friedrichs.
+    Rusanov,
+    /// Linearised Godunov; alone it is unstable under compression (design: the curl instability).
+    Acoustic,
+    /// Acoustic with a penalty on the tangential jump of F.
+    AcousticCurl,
+}
+
+/// Runs `$body` with `$flux` bound to the concrete flux.
+#[macro_export]
+macro_rules! with_flux {
+    ($choice:expr, $flux:ident => $body:expr) => {
+        match $choice {
+            $crate::riemann::Flux::Rusanov => {
+                let $flux = &$crate::riemann::Rusanov;
+                $body
+            }
+            $crate::riemann::Flux::Acoustic => {
+                let $flux = &$crate::riemann::Acoustic;
+                $body
+            }
+            $crate::riemann::Flux::AcousticCurl => {
+                let $flux = &$crate::riemann::AcousticCurl;
+                $body
+            }
+        }
+    };
+}
+
+/// The flux of a star state: Flux*_F = -v* (x) N, Flux*_p = -t*.
+#[inline(always)]
+pub fn star<L: Lane>(v: [L; 2], t: [L; 2], n: [L; 2]) -> [L; 6] {
+    [-(v[0] * n[0]), -(v[0] * n[1]), -(v[1] * n[0]), -(v[1] * n[1]), -t[0], -t[1]]
+}
+
+/// The tangent T = (-N2, N1).
+#[inline(always)]
+pub fn tangent<L: Lane>(n: [L; 2]) -> [L; 2] {
+    [-n[1], n[0]]
+}
+
+/// Adds a (x) T to the rows of F.
+#[inline(always)]
+pub fn add_tangential<L: Lane>(flux: &mut [L; 6], a: [L; 2], n: [L; 2]) {
+    let t = tangent(n);
+    for i in 0..2 {
+        for k in 0..2 {
+            flux[2 * i + k] = a[i].mul_add(t[k], flux[2 * i + k]);
+        }
+    }
+}
+
+/// Impedance Z = z_s 1 + (z_p - z_s) n n^T with n the current unit normal; both Z and its inverse act on vectors.
+#[derive(Debug, Clone, Copy)]
+pub struct Impedance<L> {
+    z: [L; 2],
+    n: [L; 2],
+}
+
+impl<L: Lane> Impedance<L> {
+    /// From speeds (c_p, c_s), density and the current unit normal.
+    #[inline(always)]
+    pub fn new(c: [L; 2], density: L, n: [L; 2]) -> Self {
+        Self { z: [density * c[0], density * c[1]], n }
+    }
+
+    /// Z a.
+    #[inline(always)]
+    pub fn times(&self, a: [L; 2]) -> [L; 2] {
+        self.act(self.z, a)
+    }
+
+    /// Z^-1 a.
+    #[inline(always)]
+    pub fn solve(&self, a: [L; 2]) -> [L; 2] {
+        self.act(self.z.map(|z| L::splat(1.0) / z), a)
+    }
+
+    #[inline(always)]
+    fn act(&self, z: [L; 2], a: [L; 2]) -> [L; 2] {
+        let normal = (z[0] - z[1]) * tensor::dot(self.n, a);
+        [z[1].mul_add(a[0], normal * self.n[0]), z[1].mul_add(a[1], normal * self.n[1])]
+    }
+}
+
+/// The current normal (cof F^- + cof F^+) N, normalised: splitting along N itself is not objective.
+#[inline(always)]
+pub fn current_normal<L: Lane>(minus: [L; 4], plus: [L; 4], n: [L; 2]) -> [L; 2] {
+    let sum: [L; 4] = std::array::from_fn(|k| minus[k] + plus[k]);
+    tensor::normalised(tensor::times(tensor::cofactor(sum), n))
+}
+
+#[cfg(test)]
+mod suite;
