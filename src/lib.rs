@@ -13,11 +13,17 @@
 pub mod error;
 pub mod lane;
 pub mod tensor;
+pub mod quadrature;
+pub mod basis;
 pub mod mesh;
 pub mod cloud;
+pub mod operators;
+pub mod state;
 pub mod material;
 pub mod riemann;
 pub mod boundary;
+pub mod source;
+pub mod step;
 pub mod io;
 pub mod scene;
 pub mod cli;

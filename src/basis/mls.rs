@@ -1,0 +1,129 @@
+//! Moving least squares on the points of a cell: the shape functions chi_p of the cloud (18).
+//!
+//! chi(xi) = p(xi)^T Pmat^+, Pmat[q, m] = p_m(xi_q), with the full Q_N in parent coordinates as orthonormal shifted
+//! Legendre products and constant weight. The basis must be the full Q_N: with total-degree P_N the scheme is unstable.
+
+use crate::error::Error;
+use nalgebra::DMatrix;
+
+/// Singular values below this share of the largest do not count for the rank: the points of a cell in real use are
+/// conditioned below 1e4, those on a line above 1e15.
+const RANK_TOLERANCE: f64 = 1e-10;
+
+/// The fit of Q_N to the points of one cell.
+#[derive(Debug, Clone)]
+pub struct MovingLeastSquares {
+    degree: usize,
+    /// Pmat^+, (N+1)^2 x N_p.
+    inverse: DMatrix<f64>,
+    /// Numerical rank of Pmat; the cell can carry Q_N where it is (N+1)^2.
+    pub rank: usize,
+    /// Ratio of the extreme singular values of Pmat (infinite where rank-deficient).
+    pub condition: f64,
+}
+
+impl MovingLeastSquares {
+    /// Fits Q_N to points with parent coordinates `xi`.
+    ///
+    /// # Errors
+    /// Where the singular values do not converge, which finite coordinates do not cause.
+    pub fn new(degree: usize, xi: &[[f64; 2]]) -> Result<Self, Error> {
+        let size = (degree + 1) * (degree + 1);
+        let rows: Vec<Vec<f64>> = xi.iter().map(|&x| legendre_2d(degree, x)).collect();
+        let matrix = DMatrix::from_fn(xi.len().max(1), size, |p, m| rows.get(p).map_or(0.0, |row| row[m]));
+        let svd = matrix.try_svd(true, true, f64::EPSILON, 0).ok_or_else(|| {
+            Error::input("the points of a cell have coordinates that no fit can use", "give finite coordinates")
+        })?;
+        let (largest, smallest) = (svd.singular_values.max(), svd.singular_values.min());
+        let rank = svd.rank(RANK_TOLERANCE * largest);
+        let condition = if rank < size { f64::INFINITY } else { largest / smallest };
+        let inverse = svd
+            .pseudo_inverse(RANK_TOLERANCE * largest)
+            .map_err(|why| Error::input(why, "give finite coordinates"))?;
+        Ok(Self { degree, inverse, rank, condition })
+    }
+
+    /// chi_p(xi) for each point p.
+    pub fn values(&self, xi: [f64; 2]) -> Vec<f64> {
+        self.combine(&legendre_2d(self.degree, xi))
+    }
+
+    /// d chi_p / d xi_b at xi for b = 1, 2.
+    pub fn gradients(&self, xi: [f64; 2]) -> [Vec<f64>; 2] {
+        let (values, slopes) = (xi.map(|x| legendre(self.degree, x).0), xi.map(|x| legendre(self.degree, x).1));
+        [self.combine(&outer(&slopes[0], &values[1])), self.combine(&outer(&values[0], &slopes[1]))]
+    }
+
+    fn combine(&self, basis: &[f64]) -> Vec<f64> {
+        self.inverse.column_iter().map(|column| column.iter().zip(basis).map(|(a, b)| a * b).sum()).collect()
+    }
+}
+
+/// Orthonormal shifted Legendre polynomials sqrt(2k+1) P_k(2x - 1) and their derivatives, k = 0..=N.
+pub fn legendre(degree: usize, x: f64) -> (Vec<f64>, Vec<f64>) {
+    let z = 2.0 * x - 1.0;
+    let (mut p, mut d) = (vec![1.0; degree + 1], vec![0.0; degree + 1]);
+    for k in 1..=degree {
+        let (kf, before) = (k as f64, if k > 1 { (p[k - 2], d[k - 2]) } else { (0.0, 0.0) });
+        p[k] = ((2.0 * kf - 1.0) * z * p[k - 1] - (kf - 1.0) * before.0) / kf;
+        d[k] = before.1 + 2.0 * (2.0 * kf - 1.0) * p[k - 1];
+    }
+    for k in 0..=degree {
+        let norm = (2.0 * k as f64 + 1.0).sqrt();
+        p[k] *= norm;
+        d[k] *= norm;
+    }
+    (p, d)
+}
+
+fn legendre_2d(degree: usize, xi: [f64; 2]) -> Vec<f64> {
+    outer(&legendre(degree, xi[0]).0, &legendre(degree, xi[1]).0)
+}
+
+fn outer(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().flat_map(|x| b.iter().map(move |y| x * y)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn lattice(at: &[f64]) -> Vec<[f64; 2]> {
+        at.iter().flat_map(|&x| at.iter().map(move |&y| [x, y])).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn reproduces_q_n_and_its_gradient_on_any_unisolvent_cloud(
+            degree in 1usize..=4, extra in 0usize..=1, seed in prop::collection::vec(-0.2..0.2f64, 72), x in 0.0..1.0f64, y in 0.0..1.0f64) {
+            let k = degree + 1 + extra;
+            let at: Vec<f64> = (0..k).map(|i| (i as f64 + 0.5) / k as f64).collect();
+            let mut cloud = lattice(&at);
+            for (i, point) in cloud.iter_mut().enumerate() {
+                point[0] += seed[2 * i] / k as f64;
+                point[1] += seed[2 * i + 1] / k as f64;
+            }
+            let fit = MovingLeastSquares::new(degree, &cloud).unwrap();
+            let n = degree as i32;
+            let field = |p: [f64; 2]| -> f64 { p[0].powi(n) * p[1].powi(n) + p[0] - 2.0 * p[1] };
+            let sum = |weights: Vec<f64>| -> f64 { weights.iter().zip(&cloud).map(|(w, p)| w * field(*p)).sum() };
+            let [dx, dy] = fit.gradients([x, y]);
+            // Rounding times the condition (below 1e3 here) and the Lebesgue constant of the corner (below 1e3).
+            let bound = 1e-9;
+            prop_assert!((sum(fit.values([x, y])) - field([x, y])).abs() < bound);
+            let power = |p: i32, x: f64| -> f64 { if n == 0 { 0.0 } else { p as f64 * x.powi(p - 1) } };
+            prop_assert!((sum(dx) - (power(n, x) * y.powi(n) + 1.0)).abs() < bound);
+            prop_assert!((sum(dy) - (power(n, y) * x.powi(n) - 2.0)).abs() < bound);
+        }
+    }
+
+    #[test]
+    fn points_on_a_line_are_seen_as_rank_deficient() {
+        let line: Vec<[f64; 2]> = (0..9).map(|i| [0.1 * i as f64, 0.1 * i as f64]).collect();
+        let fit = MovingLeastSquares::new(2, &line).unwrap();
+        // Q_2 on a diagonal holds polynomials of degree 4 in one variable.
+        assert_eq!((fit.rank, fit.condition), (5, f64::INFINITY));
+        assert_eq!(MovingLeastSquares::new(1, &[]).unwrap().rank, 0);
+    }
+}

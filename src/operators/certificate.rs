@@ -1,0 +1,46 @@
+//! What each cell can carry, known before the first step.
+
+use super::{Line, Sampling};
+use crate::basis::MovingLeastSquares;
+use crate::error::Error;
+use crate::mesh::{Mesh, map};
+
+/// The certificate of a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Certificate {
+    /// N_p.
+    pub points: usize,
+    /// Numerical rank of the fit; (N+1)^2 where the cell carries Q_N.
+    pub rank: usize,
+    /// Condition number of the fit.
+    pub condition: f64,
+    /// Face Lebesgue constant: max over face points of sum_p |chi_p|.
+    pub lebesgue: f64,
+    /// h_e, m: the time step is proportional to it.
+    pub h: f64,
+}
+
+/// Certificates of all cells, in the order of the mesh.
+///
+/// # Errors
+/// As for the fit itself.
+pub fn certify(mesh: &Mesh, line: &Line, sampling: Sampling) -> Result<Vec<Certificate>, Error> {
+    let nodes: Vec<[f64; 2]> = (0..line.m * line.m).map(|a| line.basis.node_2d(a)).collect();
+    let of = |cell: usize| match sampling {
+        Sampling::Nodes => &nodes[..],
+        Sampling::Cloud(cloud) => cloud.of(cell),
+    };
+    let key = |cell: usize| of(cell).iter().flatten().map(|x| x.to_bits()).collect::<Vec<u64>>();
+    let (class, examples) = super::matrix::classes(mesh.cells.len(), key);
+    let fits = examples.iter().map(|&cell| quality(line, of(cell))).collect::<Result<Vec<_>, Error>>()?;
+    Ok((0..mesh.cells.len()).map(|cell| Certificate { h: map::h_e(&mesh.corners(cell)), ..fits[class[cell]] }).collect())
+}
+
+fn quality(line: &Line, xi: &[[f64; 2]]) -> Result<Certificate, Error> {
+    let fit = MovingLeastSquares::new(line.m - 1, xi)?;
+    let along = &line.basis.nodes;
+    let faces = along.iter().flat_map(|&s| [[0.0, s], [1.0, s], [s, 0.0], [s, 1.0]]);
+    let sums = faces.map(|x| fit.values(x).iter().map(|chi| chi.abs()).sum::<f64>());
+    let lebesgue = sums.fold(0.0, f64::max);
+    Ok(Certificate { points: xi.len(), rank: fit.rank, condition: fit.condition, lebesgue, h: 0.0 })
+}

@@ -1,0 +1,120 @@
+//! LCF: the locally curl-free projection of the rows of F (design section 5; not in the paper).
+
+use super::matrix::{Matrix, Pool, classes};
+use super::{Blocks, Line};
+use crate::error::Error;
+use crate::lane::F8;
+use crate::mesh::{Mesh, map};
+use nalgebra::DMatrix;
+
+/// Singular values below this share of the largest are rounding: the set of columns is rank-deficient by construction,
+/// with ranks 5, 10, 17 of 8, 18, 32 on affine cells and 6, 12, 20 on others (N = 1, 2, 3).
+const RANK_TOLERANCE: f64 = 1e-9;
+
+/// The complement of the gradients: F - Pi F = C (C^T W F), C of 2 (N+1)^2 rows (direction, node), W the mass matrix.
+///
+/// Pi projects (F_i1, F_i2) at the nodes, in the weights w_a J_a, onto the gradients of Q_N in parent coordinates and
+/// of P_(N+1) in X. Uniform F and the cell mean are kept exactly. Units of C: 1/m.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurlFree {
+    /// C by class of congruent cells.
+    pub pool: Pool<Matrix<f64>, Matrix<F8>>,
+}
+
+impl CurlFree {
+    /// Builds C for all blocks.
+    ///
+    /// # Errors
+    /// Where a singular value decomposition does not converge, which a checked mesh does not cause.
+    pub fn new(mesh: &Mesh, blocks: &Blocks, line: &Line) -> Result<Self, Error> {
+        let size = mesh.nodes.iter().flatten().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
+        // Cells whose edges agree to 1e-12 of the mesh are congruent up to rounding of the node coordinates.
+        let key = |cell: usize| {
+            let c = mesh.corners(cell);
+            [1, 2, 3].map(|k| [0, 1].map(|i| ((c[k][i] - c[0][i]) / (size * 1e-12)).round() as i64))
+        };
+        let (class, examples) = classes(mesh.cells.len(), key);
+        let all =
+            examples.iter().map(|&cell| complement(&mesh.corners(cell), line)).collect::<Result<Vec<_>, Error>>()?;
+        let columns = all.iter().map(|c| c.columns).max().unwrap_or(0);
+        let pool = Pool::new(&blocks.cells, &class, all, |lanes| {
+            let padded = lanes.map(|c| widen(c, columns));
+            Matrix::interleave(padded.each_ref())
+        });
+        Ok(Self { pool })
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.pool.shared.iter().map(|c| c.data.len() * 8).sum::<usize>()
+            + self.pool.own.iter().map(|c| c.data.len() * 64).sum::<usize>()
+    }
+}
+
+/// Zero columns up to `columns`: cells of one block may have complements of different sizes.
+fn widen(c: &Matrix<f64>, columns: usize) -> Matrix<f64> {
+    let entry = |e: usize| c.row(e / columns).get(e % columns).copied().unwrap_or(0.0);
+    Matrix::new(c.rows, columns, (0..c.rows * columns).map(entry).collect())
+}
+
+/// C of one cell: W^(-1/2) times an orthonormal basis of the complement of W^(1/2) times the gradients.
+fn complement(corners: &[[f64; 2]; 4], line: &Line) -> Result<Matrix<f64>, Error> {
+    let n = line.m * line.m;
+    let root: Vec<f64> = (0..n).map(|a| mass(corners, line, a).sqrt()).collect();
+    let gradients = gradients(corners, line);
+    // Square, so that the left singular vectors span the whole space.
+    let size = (2 * n).max(gradients.len());
+    let mut matrix = DMatrix::zeros(2 * n, size);
+    for (k, column) in gradients.iter().enumerate() {
+        let weighted: Vec<f64> = column.iter().enumerate().map(|(r, g)| g * root[r % n]).collect();
+        let norm = weighted.iter().map(|g| g * g).sum::<f64>().sqrt();
+        for (r, g) in weighted.into_iter().enumerate() {
+            matrix[(r, k)] = g / norm;
+        }
+    }
+    let svd = matrix.try_svd(true, false, f64::EPSILON, 0);
+    let (values, u) = svd.and_then(|svd| Some((svd.singular_values, svd.u?))).ok_or_else(|| {
+        Error::input("the curl-free projection of a cell could not be built", "check the shape of the mesh's cells")
+    })?;
+    let outside: Vec<usize> = (0..2 * n).filter(|&k| values[k] <= RANK_TOLERANCE * values.max()).collect();
+    let entries = (0..2 * n).flat_map(|r| outside.iter().map(move |&k| (r, k))).map(|(r, k)| u[(r, k)] / root[r % n]);
+    Ok(Matrix::new(2 * n, outside.len(), entries.collect()))
+}
+
+fn mass(corners: &[[f64; 2]; 4], line: &Line, a: usize) -> f64 {
+    line.basis.weight_2d(a) * super::geometry::determinant(map::jacobian(corners, line.basis.node_2d(a)))
+}
+
+/// Columns [direction][node]: gradients in X of the monomials of Q_N in xi and of P_(N+1) in (X - Xc)/h.
+fn gradients(corners: &[[f64; 2]; 4], line: &Line) -> Vec<Vec<f64>> {
+    let (m, centre, h) = (line.m as i32, map::position(corners, [0.5, 0.5]), map::h_e(corners));
+    let nodes: Vec<[f64; 2]> = (0..line.m * line.m).map(|a| line.basis.node_2d(a)).collect();
+    let mut columns = Vec::new();
+    for (i, j) in (0..m).flat_map(|i| (0..m).map(move |j| (i, j))).filter(|&(i, j)| i + j > 0) {
+        columns.push(stack(nodes.iter().map(|&xi| {
+            let jacobian = map::jacobian(corners, xi);
+            let (c, det) = (super::geometry::cofactor(jacobian), super::geometry::determinant(jacobian));
+            // Monomials about the middle are better conditioned and span the same space.
+            let g = monomial_gradient([xi[0] - 0.5, xi[1] - 0.5], i, j);
+            [(g[0] * c[0] + g[1] * c[2]) / det, (g[0] * c[1] + g[1] * c[3]) / det]
+        })));
+    }
+    for (i, j) in (0..=m).flat_map(|i| (0..=m - i).map(move |j| (i, j))).filter(|&(i, j)| i + j > 0) {
+        columns.push(stack(nodes.iter().map(|&xi| {
+            let x = map::position(corners, xi);
+            monomial_gradient([(x[0] - centre[0]) / h, (x[1] - centre[1]) / h], i, j)
+        })));
+    }
+    columns
+}
+
+fn stack(gradients: impl Iterator<Item = [f64; 2]>) -> Vec<f64> {
+    let (first, second): (Vec<f64>, Vec<f64>) = gradients.map(|g| (g[0], g[1])).unzip();
+    [first, second].concat()
+}
+
+/// Gradient of x^i y^j.
+fn monomial_gradient(x: [f64; 2], i: i32, j: i32) -> [f64; 2] {
+    let slope = |x: f64, k: i32| if k == 0 { 0.0 } else { k as f64 * x.powi(k - 1) };
+    [slope(x[0], i) * x[1].powi(j), x[0].powi(i) * slope(x[1], j)]
+}

@@ -1,0 +1,104 @@
+//! Matrices for one cell class or for the eight cells of a block, and the pool that shares them.
+
+use crate::lane::{Coefficient, F8, LANES};
+use std::collections::HashMap;
+use std::hash::Hash;
+
+/// A dense matrix, row by row; entries are `f64` (congruent cells) or [`F8`] (each lane its own).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Matrix<C> {
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of columns.
+    pub columns: usize,
+    /// Entries, row by row.
+    pub data: Vec<C>,
+}
+
+impl<C: Coefficient> Matrix<C> {
+    /// From entries, row by row.
+    pub fn new(rows: usize, columns: usize, data: Vec<C>) -> Self {
+        debug_assert_eq!(data.len(), rows * columns);
+        Self { rows, columns, data }
+    }
+
+    /// A row.
+    #[inline(always)]
+    pub fn row(&self, r: usize) -> &[C] {
+        &self.data[r * self.columns..(r + 1) * self.columns]
+    }
+}
+
+impl Matrix<F8> {
+    /// One matrix per lane; all have the same shape.
+    pub fn interleave(lanes: [&Matrix<f64>; LANES]) -> Self {
+        let first = lanes[0];
+        let data = (0..first.data.len()).map(|e| F8(lanes.map(|lane| lane.data[e]))).collect();
+        Self { rows: first.rows, columns: first.columns, data }
+    }
+}
+
+/// Whose matrices a block uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Share {
+    /// All its cells are congruent: entry of [`Pool::shared`].
+    Shared(usize),
+    /// Its cells differ: entry of [`Pool::own`].
+    Own(usize),
+}
+
+/// Matrices of all blocks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pool<S, O> {
+    /// For each block.
+    pub share: Vec<Share>,
+    /// One a class of congruent cells.
+    pub shared: Vec<S>,
+    /// One a block of different cells.
+    pub own: Vec<O>,
+}
+
+/// Numbers the classes of cells by a key that congruent cells share: (class of each cell, a cell of each class).
+pub fn classes<K: Hash + Eq>(cells: usize, key: impl Fn(usize) -> K) -> (Vec<usize>, Vec<usize>) {
+    let mut numbers = HashMap::new();
+    let mut examples = Vec::new();
+    let class = (0..cells)
+        .map(|cell| {
+            *numbers.entry(key(cell)).or_insert_with(|| {
+                examples.push(cell);
+                examples.len() - 1
+            })
+        })
+        .collect();
+    (class, examples)
+}
+
+impl<S, O> Pool<S, O> {
+    /// Shares `build(class)` among blocks of one class, `interleave`s the classes of the others.
+    pub fn new(blocks: &[[usize; LANES]], class: &[usize], all: Vec<S>, interleave: impl Fn([&S; LANES]) -> O) -> Self {
+        let (mut share, mut own, mut used) = (Vec::new(), Vec::new(), vec![false; all.len()]);
+        for cells in blocks {
+            let first = class[cells[0]];
+            if cells.iter().all(|&cell| class[cell] == first) {
+                used[first] = true;
+                share.push(Share::Shared(first));
+            } else {
+                share.push(Share::Own(own.len()));
+                own.push(interleave(cells.map(|cell| &all[class[cell]])));
+            }
+        }
+        // Classes that stand only in mixed blocks need no copy of their own.
+        let mut number = vec![0; all.len()];
+        let mut shared = Vec::new();
+        for (class, matrices) in all.into_iter().enumerate().filter(|(class, _)| used[*class]) {
+            number[class] = shared.len();
+            shared.push(matrices);
+        }
+        for entry in &mut share {
+            if let Share::Shared(class) = entry {
+                *class = number[*class];
+            }
+        }
+        Self { share, shared, own }
+    }
+}

@@ -1,0 +1,105 @@
+//! The stored matrices of the method, built once per mesh, cloud and degree, shared by congruent cells.
+
+pub mod blocks;
+pub mod certificate;
+pub mod curl_free;
+pub mod geometry;
+pub mod matrix;
+pub mod points;
+
+pub use blocks::{Blocks, Neighbour};
+pub use certificate::Certificate;
+pub use curl_free::CurlFree;
+pub use geometry::Geometry;
+pub use matrix::{Matrix, Pool, Share};
+pub use points::{PointMatrices, Points, Sampling};
+
+use crate::basis::Lagrange;
+use crate::error::Error;
+use crate::mesh::{Link, Mesh};
+
+/// Everything that the step needs of mesh and cloud.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Operators {
+    /// Degree N in space.
+    pub degree: usize,
+    /// The 1D basis on Gauss points and its tables.
+    pub line: Line,
+    /// How cells lie in blocks of 8.
+    pub blocks: Blocks,
+    /// Metric terms at nodes and faces.
+    pub geometry: Geometry,
+    /// Transfer between points and nodes, derivatives at points; none for RK-DGFEM.
+    pub points: Option<Points>,
+    /// The projection onto gradients; none where no control of the curl is asked for.
+    pub curl_free: Option<CurlFree>,
+}
+
+/// What of the operators a method needs.
+#[derive(Debug, Clone, Copy)]
+pub struct Needs<'a> {
+    /// Degree N in space.
+    pub degree: usize,
+    /// Where the predictor samples, if there is one.
+    pub sampling: Option<Sampling<'a>>,
+    /// Whether the curl of F is controlled.
+    pub curl_free: bool,
+}
+
+impl Operators {
+    /// Builds all matrices. `material` gives for each cell the number of its law.
+    ///
+    /// # Errors
+    /// A cell whose points cannot carry Q_N, by number and with the remedy.
+    pub fn build(mesh: &Mesh, links: &[[Link; 4]], material: &[usize], needs: &Needs) -> Result<Self, Error> {
+        let line = Line::new(needs.degree);
+        let blocks = Blocks::new(material, links);
+        let geometry = Geometry::new(mesh, &blocks, &line);
+        let points = needs.sampling.map(|s| Points::new(mesh, &blocks, &line, s)).transpose()?;
+        let curl_free = needs.curl_free.then(|| CurlFree::new(mesh, &blocks, &line)).transpose()?;
+        Ok(Self { degree: needs.degree, line, blocks, geometry, points, curl_free })
+    }
+
+    /// (N+1)^2.
+    pub fn nodes(&self) -> usize {
+        self.line.m * self.line.m
+    }
+
+    /// Bytes held by matrices and metric terms.
+    pub fn bytes(&self) -> usize {
+        self.geometry.bytes()
+            + self.points.as_ref().map_or(0, Points::bytes)
+            + self.curl_free.as_ref().map_or(0, CurlFree::bytes)
+            + self.blocks.bytes()
+    }
+}
+
+/// The 1D tables of the nodal basis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// The basis itself.
+    pub basis: Lagrange,
+    /// M = N + 1.
+    pub m: usize,
+    /// D[i][k] = l_k'(x_i).
+    pub slope: Vec<f64>,
+    /// Weak derivative: w_k l_i'(x_k) / w_i at [i][k].
+    pub weak: Vec<f64>,
+    /// l_k(0) and l_k(1).
+    pub ends: [Vec<f64>; 2],
+}
+
+impl Line {
+    /// Tables of degree N.
+    pub fn new(degree: usize) -> Self {
+        let basis = Lagrange::new(degree);
+        let (m, slope) = (basis.len(), basis.derivative_matrix());
+        let w = &basis.weights;
+        let weak = (0..m * m).map(|e| w[e % m] * slope[(e % m) * m + e / m] / w[e / m]).collect();
+        let ends = [basis.values(0.0), basis.values(1.0)];
+        Self { basis, m, slope, weak, ends }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,41 @@
+//! The unknowns, and nothing else: what a checkpoint holds.
+
+use crate::lane::F8;
+use crate::operators::Blocks;
+
+/// Components of U = (F11, F12, F21, F22, p1, p2).
+pub const UNKNOWNS: usize = 6;
+
+/// The grid unknowns at the Gauss nodes, the master copy between steps.
+///
+/// Layout: [block][component][node], node a = i M + j with i along xi1. Components are the six of U and, where an
+/// output asks for it, the displacement u1, u2 (m), which no flux touches: du/dt = v.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Time t, s.
+    pub time: f64,
+    /// Number of steps done.
+    pub step: usize,
+    /// 6, or 8 with displacement.
+    pub components: usize,
+    /// The numbers.
+    pub u: Vec<F8>,
+}
+
+impl State {
+    /// From numbers per cell, [cell][component][node]; padding lanes rest at F = 1, p = 0.
+    pub fn pack(blocks: &Blocks, nodes: usize, components: usize, cells: &[f64]) -> Self {
+        let rest = |k: usize| if k / nodes == 0 || k / nodes == 3 { 1.0 } else { 0.0 };
+        Self { time: 0.0, step: 0, components, u: blocks.pack(cells, components * nodes, rest) }
+    }
+
+    /// Numbers per cell, [cell][component][node].
+    pub fn unpack(&self, blocks: &Blocks, nodes: usize) -> Vec<f64> {
+        blocks.unpack(&self.u, self.components * nodes)
+    }
+
+    /// Whether the displacement is integrated.
+    pub fn has_displacement(&self) -> bool {
+        self.components > UNKNOWNS
+    }
+}

@@ -1,0 +1,176 @@
+//! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
+
+use super::dense::{add_scaled, apply, gather, scatter};
+use super::predictor::Predictor;
+use super::volume::{self, Metric};
+use super::{Method, Phase, Scheme, Scratch};
+use crate::boundary::TimeNode;
+use crate::lane::{Coefficient, F8, LANES, Lanes, Work};
+use crate::material::Material;
+use crate::mesh::map;
+use crate::operators::{PointMatrices, Points, Share};
+use crate::state::{State, UNKNOWNS};
+use crate::with_law;
+use std::time::Instant;
+
+/// The stage of a step that is begun.
+pub struct Stage<'a> {
+    /// Its number, from 0.
+    pub number: usize,
+    /// The time nodes over which it averages.
+    pub times: &'a [TimeNode],
+    /// Step, s.
+    pub dt: f64,
+}
+
+/// The work on one block.
+pub struct Block<'a> {
+    /// The scheme.
+    pub scheme: &'a Scheme,
+    /// The stage.
+    pub stage: &'a Stage<'a>,
+    /// The block.
+    pub block: usize,
+    /// The state at t_n.
+    pub state: &'a State,
+    /// dU/dt of earlier stages.
+    pub before: &'a [Vec<F8>],
+    /// Volume part of dU/dt of this block (out).
+    pub rate: &'a mut [F8],
+    /// Traces of this block (out).
+    pub traces: &'a mut [F8],
+    /// The thread's arrays.
+    pub scratch: &'a mut Scratch,
+}
+
+impl Work for Block<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        with_law!(&self.scheme.laws[self.scheme.operators.blocks.material[self.block]], law => self.with::<L, _>(law))
+    }
+}
+
+impl Block<'_> {
+    #[inline(always)]
+    fn with<L: Lanes, M: Material>(mut self, law: &M) {
+        let mut clock = Instant::now();
+        match &self.scheme.operators.points {
+            None => self.stage::<L, M>(law),
+            Some(points) => match points.pool.share[self.block] {
+                Share::Shared(k) => self.predict::<L, M, _>(law, points, &points.pool.shared[k], &mut clock),
+                Share::Own(k) => self.predict::<L, M, _>(law, points, &points.pool.own[k], &mut clock),
+            },
+        }
+        let operators = &self.scheme.operators;
+        let (line, n) = (&operators.line, operators.nodes());
+        let metric = Metric::of(&operators.geometry, self.block, n);
+        volume::volume::<L>(line, metric, &mut self.scratch.nodes, self.rate);
+        if !self.scheme.sources.is_empty() {
+            self.source_at_nodes();
+            add_scaled::<L>(law.density(), &self.scratch.nodes.source, &mut self.rate[4 * n..6 * n]);
+        }
+        if self.state.has_displacement() {
+            self.rate[UNKNOWNS * n..].copy_from_slice(&self.scratch.nodes.mean[4 * n..6 * n]);
+        }
+        self.scratch.phases.book(Phase::Volume, &mut clock);
+        volume::traces::<L, M>(law, line, metric, &self.scratch.nodes.mean, self.traces);
+        self.scratch.phases.book(Phase::Traces, &mut clock);
+    }
+
+    /// Runge-Kutta: U = U^n + dt sum_j a_ij k_j, and the law at the nodes.
+    #[inline(always)]
+    fn stage<L: Lanes, M: Material>(&mut self, law: &M) {
+        let (n, stride) = (self.scheme.operators.nodes(), self.rate.len());
+        let begin = stride * self.block;
+        self.scratch.nodes.stage.copy_from_slice(&self.state.u[begin..begin + stride]);
+        if let Method::RungeKutta(tableau) = &self.scheme.method {
+            for (k, rate) in self.before.iter().enumerate().filter(|(k, _)| tableau.a[self.stage.number][*k] != 0.0) {
+                let factor = self.stage.dt * tableau.a[self.stage.number][k];
+                add_scaled::<L>(factor, &rate[begin..begin + stride], &mut self.scratch.nodes.stage);
+            }
+        }
+        let inverse_density = L::splat(1.0 / law.density());
+        for a in 0..n {
+            let [f11, f12, f21, f22, p1, p2] = gather::<L, 6>(&self.scratch.nodes.stage, n, a);
+            let s = law.stress([f11, f12, f21, f22], &mut []);
+            let v = [p1 * inverse_density, p2 * inverse_density];
+            scatter([f11, f12, f21, f22, v[0], v[1], s[0], s[1], s[2], s[3]], &mut self.scratch.nodes.mean, n, a);
+        }
+    }
+
+    /// ADER: G2P (22), predictor (15)-(21), P2G of the averages (18).
+    #[inline(always)]
+    fn predict<L: Lanes, M: Material, C: Coefficient>(
+        &mut self,
+        law: &M,
+        points: &Points,
+        matrices: &PointMatrices<C>,
+        clock: &mut Instant,
+    ) {
+        let Method::Ader { time, sweeps } = &self.scheme.method else { return };
+        let first = points.first[self.block];
+        let n = self.scheme.operators.nodes();
+        let stride = self.rate.len();
+        let start = &self.state.u[stride * self.block..stride * (self.block + 1)];
+        apply::<L, C, 6>(&matrices.from_nodes, start, &mut self.scratch.points.start);
+        if !self.scheme.sources.is_empty() {
+            self.source_at_points(points, matrices.points());
+        }
+        self.scratch.phases.book(Phase::GridToPoints, clock);
+        let metric = &points.metric[4 * first..4 * (first + matrices.points())];
+        let predictor = Predictor { law, matrices, metric, time, sweeps: *sweeps, dt: self.stage.dt };
+        predictor.run::<L>(&mut self.scratch.points);
+        self.scratch.phases.book(Phase::Predictor, clock);
+        let (np, mean) = (matrices.points(), &self.scratch.points.mean);
+        apply::<L, C, 5>(&matrices.to_nodes, mean, &mut self.scratch.nodes.mean);
+        apply::<L, C, 5>(&matrices.to_nodes, &mean[5 * np..], &mut self.scratch.nodes.mean[5 * n..]);
+        self.scratch.phases.book(Phase::PointsToGrid, clock);
+    }
+
+    /// b at the points and time nodes.
+    fn source_at_points(&mut self, points: &Points, np: usize) {
+        for lane in 0..LANES {
+            let corners = self.scheme.operators.geometry.corners_of(self.block, lane);
+            for p in 0..np {
+                let at = points.first[self.block] + p;
+                let x = map::position(&corners, [0, 1].map(|k| points.parent[2 * at + k].0[lane]));
+                for (s, node) in self.stage.times.iter().enumerate() {
+                    let b = self.acceleration(x, node.time, lane);
+                    for (k, b) in b.into_iter().enumerate() {
+                        self.scratch.points.source[(2 * s + k) * np + p].0[lane] = b;
+                    }
+                }
+            }
+        }
+    }
+
+    /// b at the nodes, averaged over the time nodes.
+    fn source_at_nodes(&mut self) {
+        let n = self.scheme.operators.nodes();
+        for lane in 0..LANES {
+            let corners = self.scheme.operators.geometry.corners_of(self.block, lane);
+            for a in 0..n {
+                let x = map::position(&corners, self.scheme.operators.line.basis.node_2d(a));
+                let mut mean = [0.0; 2];
+                for node in self.stage.times {
+                    let b = self.acceleration(x, node.time, lane);
+                    mean = [0, 1].map(|k| mean[k] + node.weight * b[k]);
+                }
+                (0..2).for_each(|k| self.scratch.nodes.source[k * n + a].0[lane] = mean[k]);
+            }
+        }
+    }
+
+    /// Sum of all sources; padding lanes stay at rest.
+    fn acceleration(&self, x: [f64; 2], time: f64, lane: usize) -> [f64; 2] {
+        let blocks = &self.scheme.operators.blocks;
+        if lane >= blocks.count[self.block] {
+            return [0.0; 2];
+        }
+        self.scheme.sources.iter().fold([0.0; 2], |sum, source| {
+            let b = source.acceleration(x, time, blocks.material[self.block]);
+            [sum[0] + b[0], sum[1] + b[1]]
+        })
+    }
+}

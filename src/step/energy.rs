@@ -1,0 +1,95 @@
+//! Totals of a state by grid quadrature (sums over points with volumes are wrong for most layouts).
+
+use super::Scheme;
+use crate::state::State;
+use crate::tensor;
+use rayon::prelude::*;
+
+/// Totals per unit thickness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Totals {
+    /// int |p|^2 / (2 rho0) dX, J/m.
+    pub kinetic: f64,
+    /// int W dX, J/m.
+    pub strain: f64,
+    /// int p dX, kg/s (per metre of thickness).
+    pub momentum: [f64; 2],
+    /// int F dX, m^2.
+    pub deformation: [f64; 4],
+    /// min J over the nodes.
+    pub min_j: f64,
+    /// Largest |dF_i2/dX_1 - dF_i1/dX_2| at the nodes, 1/m.
+    pub max_curl: f64,
+}
+
+impl Totals {
+    /// No cell yet.
+    const EMPTY: Totals =
+        Totals { kinetic: 0.0, strain: 0.0, momentum: [0.0; 2], deformation: [0.0; 4], min_j: f64::INFINITY, max_curl: 0.0 };
+
+    /// Kinetic and strain energy, J/m.
+    pub fn energy(&self) -> f64 {
+        self.kinetic + self.strain
+    }
+
+    fn add(&mut self, other: &Totals) {
+        self.kinetic += other.kinetic;
+        self.strain += other.strain;
+        self.momentum.iter_mut().zip(other.momentum).for_each(|(a, b)| *a += b);
+        self.deformation.iter_mut().zip(other.deformation).for_each(|(a, b)| *a += b);
+        self.min_j = self.min_j.min(other.min_j);
+        self.max_curl = self.max_curl.max(other.max_curl);
+    }
+}
+
+impl Scheme {
+    /// Totals of a state; cells are added in a fixed order.
+    pub fn totals(&self, state: &State) -> Totals {
+        let blocks: Vec<Totals> = (0..self.operators.blocks.len())
+            .into_par_iter()
+            .map(|block| {
+                let mut sum = Totals::EMPTY;
+                (0..self.operators.blocks.count[block]).for_each(|lane| sum.add(&self.totals_of(state, block, lane)));
+                sum
+            })
+            .collect();
+        let mut sum = Totals::EMPTY;
+        blocks.iter().for_each(|block| sum.add(block));
+        sum
+    }
+
+    fn totals_of(&self, state: &State, block: usize, lane: usize) -> Totals {
+        let (n, law) = (self.operators.nodes(), &self.laws[self.operators.blocks.material[block]]);
+        let u = &state.u[block * state.components * n..];
+        let mut sum = Totals::EMPTY;
+        for a in 0..n {
+            let mass = self.operators.geometry.mass[block * n + a].0[lane];
+            let [f11, f12, f21, f22, p1, p2]: [f64; 6] = std::array::from_fn(|k| u[k * n + a].0[lane]);
+            let f = [f11, f12, f21, f22];
+            sum.add(&Totals {
+                kinetic: mass * (p1 * p1 + p2 * p2) / (2.0 * law.density()),
+                strain: mass * law.energy(f),
+                momentum: [mass * p1, mass * p2],
+                deformation: f.map(|x| mass * x),
+                min_j: tensor::det(f),
+                max_curl: self.curl(u, block, lane, a),
+            });
+        }
+        sum
+    }
+
+    /// Larger of the two rows' |dF_i2/dX_1 - dF_i1/dX_2| at node a.
+    fn curl(&self, u: &[crate::lane::F8], block: usize, lane: usize, a: usize) -> f64 {
+        let (line, n) = (&self.operators.line, self.operators.nodes());
+        let (m, i, j) = (line.m, a / line.m, a % line.m);
+        let c: [f64; 4] = std::array::from_fn(|k| self.operators.geometry.cofactor[4 * (block * n + a) + k].0[lane]);
+        let determinant = c[0] * c[3] - c[1] * c[2];
+        let gradient = |component: usize, axis: usize| -> f64 {
+            let at = |node: usize| u[component * n + node].0[lane];
+            let along1: f64 = (0..m).map(|k| line.slope[i * m + k] * at(k * m + j)).sum();
+            let along2: f64 = (0..m).map(|k| line.slope[j * m + k] * at(i * m + k)).sum();
+            (along1 * c[axis] + along2 * c[2 + axis]) / determinant
+        };
+        (gradient(1, 0) - gradient(0, 1)).abs().max((gradient(3, 0) - gradient(2, 1)).abs())
+    }
+}

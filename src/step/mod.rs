@@ -1,0 +1,201 @@
+//! One step of the method, as in section 5 of the paper.
+//!
+//! Per block of 8 cells: `begin` = G2P, predictor, time averages, volume term, traces; then, with the neighbours'
+//! traces, `finish` = flux, lift, update, LCF. [`Scheme`] is read-only, [`State`] is all that changes, [`Work`] carries
+//! nothing from step to step: threads, restart and regrid follow from that.
+
+mod begin;
+pub mod cfl;
+mod curl;
+mod dense;
+mod energy;
+mod finish;
+pub mod phase;
+mod predictor;
+mod runge_kutta;
+mod survey;
+mod volume;
+
+pub use energy::Totals;
+pub use phase::{Phase, Phases};
+pub use runge_kutta::Tableau;
+pub use survey::{Loss, Survey};
+
+use crate::basis::TimeBasis;
+use crate::boundary::{Boundary, TimeNode};
+use crate::lane::{F8, Kernel};
+use crate::material::Law;
+use crate::operators::Operators;
+use crate::riemann::{Flux, TRACE};
+use crate::source::Source;
+use crate::state::State;
+use rayon::prelude::*;
+use std::sync::Mutex;
+
+/// How time is integrated.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Method {
+    /// Local space-time predictor and one corrector a step (15)-(21): ADER-DGMPM, and ADER-DGFEM at the nodes.
+    Ader {
+        /// The time nodes and their integration matrix.
+        time: TimeBasis,
+        /// Picard sweeps; max(N, N_T) + 1 by default.
+        sweeps: usize,
+    },
+    /// Explicit Runge-Kutta: RK-DGFEM.
+    RungeKutta(Tableau),
+}
+
+/// Everything that stays the same during a run.
+pub struct Scheme {
+    /// Matrices of mesh and cloud.
+    pub operators: Operators,
+    /// The laws, by number.
+    pub laws: Vec<Law>,
+    /// Time integration.
+    pub method: Method,
+    /// Interface flux between cells of one law.
+    pub flux: Flux,
+    /// Condition of each boundary group of the mesh.
+    pub boundaries: Vec<Box<dyn Boundary>>,
+    /// Sources of momentum.
+    pub sources: Vec<Box<dyn Source>>,
+    /// alpha of LCF, theta = 1 - exp(-alpha c dt / h); none where it is off. (The scene's alpha times N.)
+    pub curl_rate: Option<f64>,
+    /// The instruction set.
+    pub kernel: Kernel,
+}
+
+/// Memory that a step writes and that nothing reads from an earlier step.
+pub struct Work {
+    /// The new state, once the step is done; the caller swaps it in if it is healthy.
+    pub next: State,
+    /// dU/dt of each stage, as `State::u`.
+    rates: Vec<Vec<F8>>,
+    /// Traces of all faces: [block][face][point][TRACE numbers].
+    traces: Vec<F8>,
+    /// One a thread.
+    scratch: Vec<Mutex<Scratch>>,
+}
+
+/// Arrays of one block, and the seconds that its thread spent on each phase.
+#[derive(Default)]
+pub(crate) struct Scratch {
+    pub points: predictor::Arrays,
+    pub nodes: volume::Arrays,
+    pub phases: Phases,
+}
+
+impl Work {
+    /// Memory for steps of `scheme` on states like `state`, for the current number of threads.
+    pub fn new(scheme: &Scheme, state: &State) -> Self {
+        let operators = &scheme.operators;
+        let points = operators.points.as_ref().map_or(0, |p| {
+            p.first.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0)
+        });
+        let (stages, times) = match &scheme.method {
+            Method::Ader { time, .. } => (1, time.len()),
+            Method::RungeKutta(tableau) => (tableau.stages(), 1),
+        };
+        let scratch = || {
+            Mutex::new(Scratch {
+                points: predictor::Arrays::new(points, times, !scheme.sources.is_empty()),
+                nodes: volume::Arrays::new(operators.line.m, state.components),
+                phases: Phases::default(),
+            })
+        };
+        Self {
+            next: state.clone(),
+            rates: vec![vec![F8::ZERO; state.u.len()]; stages],
+            traces: vec![F8::ZERO; operators.blocks.len() * 4 * operators.line.m * TRACE],
+            scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
+        }
+    }
+
+    /// Seconds per phase, summed over threads, since the last call.
+    pub fn take_phases(&mut self) -> Phases {
+        let mut sum = Phases::default();
+        for scratch in &mut self.scratch {
+            let phases = scratch.get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());
+            sum.add(&std::mem::take(&mut phases.phases));
+        }
+        sum
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let numbers = self.next.u.len() + self.traces.len() + self.rates.iter().map(Vec::len).sum::<usize>();
+        numbers * size_of::<F8>()
+    }
+}
+
+/// Runs `body` with the scratch of the current thread. Uncontended: a thread holds one block at a time.
+pub(crate) fn with_scratch<R>(scratch: &[Mutex<Scratch>], body: impl FnOnce(&mut Scratch) -> R) -> R {
+    let thread = rayon::current_thread_index().unwrap_or(0) % scratch.len();
+    let mut guard = scratch[thread].lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    body(&mut guard)
+}
+
+impl Scheme {
+    /// Advances `state` by `dt` into `work.next`. `survey` is that of `state`.
+    pub fn step(&self, state: &State, dt: f64, survey: &Survey, work: &mut Work) {
+        match &self.method {
+            Method::Ader { time, .. } => {
+                let node = |(tau, weight): (&f64, &f64)| TimeNode { time: state.time + tau * dt, weight: *weight };
+                // At most 7 nodes: on the stack, no allocation in a step.
+                let mut times = [TimeNode { time: 0.0, weight: 0.0 }; 8];
+                times.iter_mut().zip(time.tau.iter().zip(&time.weights)).for_each(|(t, n)| *t = node(n));
+                let times = &times[..time.len()];
+                self.begin(&begin::Stage { number: 0, times, dt }, state, work);
+                self.finish(&finish::Stage { number: 0, times, dt }, state, survey, work);
+            }
+            Method::RungeKutta(tableau) => {
+                for number in 0..tableau.stages() {
+                    let times = [TimeNode { time: state.time + tableau.c[number] * dt, weight: 1.0 }];
+                    self.begin(&begin::Stage { number, times: &times, dt }, state, work);
+                    self.finish(&finish::Stage { number, times: &times, dt }, state, survey, work);
+                }
+            }
+        }
+        work.next.time = state.time + dt;
+        work.next.step = state.step + 1;
+    }
+
+    /// Volume term and traces of every block.
+    fn begin(&self, stage: &begin::Stage, state: &State, work: &mut Work) {
+        let stride = state.components * self.operators.nodes();
+        let traces = 4 * self.operators.line.m * TRACE;
+        let (before, now) = work.rates.split_at_mut(stage.number);
+        let (before, scratch) = (&*before, &work.scratch);
+        now[0].par_chunks_mut(stride).zip(work.traces.par_chunks_mut(traces)).enumerate().for_each(|(block, (rate, traces))| {
+            with_scratch(scratch, |scratch| {
+                let work = begin::Block { scheme: self, stage, block, state, before, rate, traces, scratch };
+                self.kernel.run(work)
+            })
+        });
+    }
+
+    /// Fluxes, lift, and after the last stage the update, of every block.
+    fn finish(&self, stage: &finish::Stage, state: &State, survey: &Survey, work: &mut Work) {
+        let stride = state.components * self.operators.nodes();
+        let (before, now) = work.rates.split_at_mut(stage.number);
+        let (before, scratch, traces) = (&*before, &work.scratch, &work.traces[..]);
+        now[0].par_chunks_mut(stride).zip(work.next.u.par_chunks_mut(stride)).enumerate().for_each(|(block, (rate, next))| {
+            with_scratch(scratch, |scratch| {
+                let work = finish::Block { scheme: self, stage, block, state, survey, before, rate, traces, next, scratch };
+                self.kernel.run(work)
+            })
+        });
+    }
+
+    /// Number of stages of a step (1 for ADER).
+    pub fn stages(&self) -> usize {
+        match &self.method {
+            Method::Ader { .. } => 1,
+            Method::RungeKutta(tableau) => tableau.stages(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

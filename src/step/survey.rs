@@ -1,0 +1,190 @@
+//! The health of a state: current wave speeds (for dt and LCF), min J, and where stability was lost.
+
+use super::{Phase, Scheme, Scratch, Work as Memory, dense, with_scratch};
+use crate::lane::{Coefficient, F8, Lanes, Work};
+use crate::material::Material;
+use crate::operators::{Matrix, Share};
+use crate::state::State;
+use crate::tensor;
+use crate::with_law;
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// What a state tells before it is stepped.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Survey {
+    /// Largest current speed over the points (nodes for RK) of each cell, m/s: [block].
+    pub speed: Vec<F8>,
+    /// The largest of all, m/s.
+    pub fastest: f64,
+    /// min J over all points.
+    pub min_j: f64,
+}
+
+/// How a state lost stability.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loss {
+    /// The cell (index in the mesh).
+    pub cell: usize,
+    /// The point in the cell (the node for RK).
+    pub point: usize,
+    /// What was lost.
+    pub kind: LossKind,
+}
+
+/// Kinds of lost stability.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LossKind {
+    /// A number of the state is not finite.
+    NotFinite,
+    /// J <= 0: the material is turned inside out.
+    Inverted(f64),
+    /// The acoustic tensor has a negative eigenvalue.
+    NotHyperbolic,
+}
+
+impl std::fmt::Display for LossKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            LossKind::NotFinite => write!(f, "a number of the state is not finite"),
+            LossKind::Inverted(j) => write!(f, "J = {j:.3e} <= 0: the material is turned inside out"),
+            LossKind::NotHyperbolic => write!(f, "loss of hyperbolicity: the acoustic tensor has a negative eigenvalue"),
+        }
+    }
+}
+
+impl Scheme {
+    /// Surveys `state` into `out`.
+    ///
+    /// # Errors
+    /// The first cell (in the order of the blocks) that lost stability.
+    pub fn survey(&self, state: &State, memory: &Memory, out: &mut Survey) -> Result<(), Loss> {
+        let blocks = &self.operators.blocks;
+        out.speed.resize(blocks.len(), F8::ZERO);
+        let worst = out.speed.par_iter_mut().enumerate().map(|(block, speed)| {
+            with_scratch(&memory.scratch, |scratch| {
+                let found = self.kernel.run(Block { scheme: self, state, block, scratch });
+                *speed = found.speed;
+                let real = ..blocks.count[block];
+                let healthy = found.poison.0[real].iter().all(|x| *x == 0.0) && found.min_j.0[real].iter().all(|j| *j > 0.0);
+                let fastest = found.speed.0[real].iter().fold(0.0_f64, |a, b| a.max(*b));
+                let min_j = found.min_j.0[real].iter().fold(f64::INFINITY, |a, b| a.min(*b));
+                (if healthy { usize::MAX } else { block }, fastest, min_j)
+            })
+        });
+        // Minimum and maximum do not depend on the order: same bits for any number of threads.
+        let (sick, fastest, min_j) =
+            worst.reduce(|| (usize::MAX, 0.0, f64::INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1), a.2.min(b.2)));
+        (out.fastest, out.min_j) = (fastest, min_j);
+        if sick == usize::MAX { Ok(()) } else { Err(self.find_loss(state, sick)) }
+    }
+
+    /// Names cell and point in a block that is known to be sick.
+    fn find_loss(&self, state: &State, block: usize) -> Loss {
+        let blocks = &self.operators.blocks;
+        let n = self.operators.nodes();
+        let stride = state.components * n;
+        let u = &state.u[block * stride..(block + 1) * stride];
+        let law = &self.laws[blocks.material[block]];
+        let mut first = None;
+        for lane in 0..blocks.count[block] {
+            let number = |k: usize, a: usize| u[k * n + a].0[lane];
+            let finite = (0..stride).all(|k| u[k].0[lane].is_finite());
+            let points = self.from_nodes(block, lane);
+            let count = points.as_ref().map_or(n, |m| m.rows);
+            for point in 0..count {
+                let at = |k: usize| match &points {
+                    None => number(k, point),
+                    Some(m) => m.row(point).iter().enumerate().map(|(a, w)| w * number(k, a)).sum(),
+                };
+                let f: [f64; 4] = std::array::from_fn(at);
+                let j = tensor::det(f);
+                let speeds = law.largest_speeds(f);
+                let kind = match () {
+                    _ if !finite => LossKind::NotFinite,
+                    _ if j <= 0.0 => LossKind::Inverted(j),
+                    _ if speeds.iter().any(|c| c.is_nan()) => LossKind::NotHyperbolic,
+                    _ => continue,
+                };
+                first = first.or(Some(Loss { cell: blocks.cells[block][lane], point, kind }));
+            }
+        }
+        first.unwrap_or(Loss { cell: blocks.cells[block][0], point: 0, kind: LossKind::NotFinite })
+    }
+
+    /// Phi_a(xi_p) of one lane of a block; none for RK, where points are nodes.
+    fn from_nodes(&self, block: usize, lane: usize) -> Option<Matrix<f64>> {
+        let pool = &self.operators.points.as_ref()?.pool;
+        Some(match pool.share[block] {
+            Share::Shared(k) => pool.shared[k].from_nodes.clone(),
+            Share::Own(k) => {
+                let own = &pool.own[k].from_nodes;
+                Matrix::new(own.rows, own.columns, own.data.iter().map(|x| x.0[lane]).collect())
+            }
+        })
+    }
+}
+
+struct Block<'a> {
+    scheme: &'a Scheme,
+    state: &'a State,
+    block: usize,
+    scratch: &'a mut Scratch,
+}
+
+struct Found {
+    speed: F8,
+    min_j: F8,
+    /// 0, or NaN where a number or a speed is not finite.
+    poison: F8,
+}
+
+impl Work for Block<'_> {
+    type Out = Found;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Found {
+        let mut clock = Instant::now();
+        let operators = &self.scheme.operators;
+        let stride = self.state.components * operators.nodes();
+        let u = &self.state.u[stride * self.block..stride * (self.block + 1)];
+        let law = &self.scheme.laws[operators.blocks.material[self.block]];
+        let points = &mut self.scratch.points.start;
+        let count = match operators.points.as_ref().map(|p| (p, p.pool.share[self.block])) {
+            None => operators.nodes(),
+            Some((p, Share::Shared(k))) => to_points::<L, _>(&p.pool.shared[k].from_nodes, u, points),
+            Some((p, Share::Own(k))) => to_points::<L, _>(&p.pool.own[k].from_nodes, u, points),
+        };
+        let f = if operators.points.is_some() { &points[..] } else { u };
+        let found = with_law!(law, law => examine::<L, _>(law, f, count, u));
+        self.scratch.phases.book(Phase::Survey, &mut clock);
+        found
+    }
+}
+
+/// F at the points; the number of points.
+#[inline(always)]
+fn to_points<L: Lanes, C: Coefficient>(from_nodes: &Matrix<C>, u: &[F8], points: &mut [F8]) -> usize {
+    dense::apply::<L, C, 4>(from_nodes, u, points);
+    from_nodes.rows
+}
+
+#[inline(always)]
+fn examine<L: Lanes, M: Material>(law: &M, f: &[F8], count: usize, u: &[F8]) -> Found {
+    let (mut speed, mut min_j, mut poison) = (L::zero(), L::splat(f64::INFINITY), L::zero());
+    for p in 0..count {
+        let f = dense::gather::<L, 4>(f, count, p);
+        let c = law.largest_speeds(f);
+        speed = speed.max(c[0]);
+        min_j = min_j.min(tensor::det(f));
+        poison = poison + L::zero() * (c[0] + c[1]);
+    }
+    for x in u {
+        poison = L::load(x).mul_add(L::zero(), poison);
+    }
+    let store = |x: L| {
+        let mut out = F8::ZERO;
+        x.store(&mut out);
+        out
+    };
+    Found { speed: store(speed), min_j: store(min_j), poison: store(poison) }
+}
