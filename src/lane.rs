@@ -5,8 +5,9 @@
 //! [`Kernel::run`] picks the widest type that the processor has and enters a function compiled for it, so
 //! that one portable binary runs everywhere. All `unsafe` of the program is in this file.
 //!
-//! Pitfall: every generic function on the hot path needs `#[inline(always)]`; one that is not inlined is
-//! compiled without the processor's features, 4-6 times slower, silently.
+//! Pitfall: every generic function on the hot path needs `#[inline(always)]`, and closures cannot have it (so no
+//! `array::map` there either): one that is not inlined is compiled without the processor's features, 4-6 times
+//! slower, silently. `tests/inlining.rs` looks for such calls in the binary.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -85,6 +86,16 @@ pub trait Lanes: Lane {
     fn load(from: &F8) -> Self;
     /// Writes 8 lanes.
     fn store(self, to: &mut F8);
+}
+
+/// K numbers that lie behind each other. (`array::from_fn` and `array::map` take closures, which are not inlined.)
+#[inline(always)]
+pub fn load_array<L: Lanes, const K: usize>(from: &[F8]) -> [L; K] {
+    let mut out = [L::zero(); K];
+    for (out, from) in out.iter_mut().zip(from) {
+        *out = L::load(from);
+    }
+    out
 }
 
 /// An entry of an operator matrix: one number for all cells of a block (`f64`: the cells are congruent) or

@@ -36,7 +36,8 @@ pub trait Material {
     fn speeds<L: Lane>(&self, f: [L; 4], n: [L; 2]) -> [L; 2] {
         let [b11, b12, b22] = self.acoustic(f, n);
         let inverse = L::splat(1.0 / self.density());
-        tensor::eigenvalues(b11, b12, b22).map(|b| (b * inverse).sqrt())
+        let [larger, smaller] = tensor::eigenvalues(b11, b12, b22);
+        [(larger * inverse).sqrt(), (smaller * inverse).sqrt()]
     }
 
     /// (c_p, c_s) along the smallest principal stretch, where c_p is the largest of all directions (isotropic laws).

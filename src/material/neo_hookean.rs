@@ -55,7 +55,12 @@ impl Material for NeoHookean {
     fn stress<L: Lane>(&self, f: [L; 4], _: &mut [L]) -> [L; 4] {
         let Terms { a, b, .. } = self.terms(f);
         let g = tensor::cofactor(f);
-        std::array::from_fn(|k| a.mul_add(f[k], b * g[k]))
+        [
+            a.mul_add(f[0], b * g[0]),
+            a.mul_add(f[1], b * g[1]),
+            a.mul_add(f[2], b * g[2]),
+            a.mul_add(f[3], b * g[3]),
+        ]
     }
 
     /// P33 = A + B J.
@@ -80,8 +85,11 @@ impl Material for NeoHookean {
         let inverse = L::splat(1.0) / j;
         let cross = a * inverse * L::splat(-2.0 / 3.0);
         let square = (a * invariant * inverse * inverse).mul_add(L::splat(5.0 / 9.0), L::splat(self.kappa));
-        let entry = |i: usize, k: usize| cross * (u[i] * g[k] + g[i] * u[k]) + square * g[i] * g[k];
-        [a + entry(0, 0), entry(0, 1), a + entry(1, 1)]
+        // cross (f g^T + g f^T) + square g g^T = h g^T + g h^T with h = cross f + square/2 g.
+        let half = L::splat(0.5) * square;
+        let h = [cross.mul_add(u[0], half * g[0]), cross.mul_add(u[1], half * g[1])];
+        let two = L::splat(2.0);
+        [(two * h[0]).mul_add(g[0], a), h[0].mul_add(g[1], h[1] * g[0]), (two * h[1]).mul_add(g[1], a)]
     }
 }
 

@@ -20,8 +20,8 @@ impl Riemann for Acoustic {
         let z = Impedance::new(c, density, current_normal(minus.f, plus.f, n));
         let dv = z.solve([plus.t[0] - minus.t[0], plus.t[1] - minus.t[1]]);
         let dt = z.times([plus.v[0] - minus.v[0], plus.v[1] - minus.v[1]]);
-        let v = std::array::from_fn(|i| half * (minus.v[i] + plus.v[i] + dv[i]));
-        let t = std::array::from_fn(|i| half * (minus.t[i] + plus.t[i] + dt[i]));
+        let v = [half * (minus.v[0] + plus.v[0] + dv[0]), half * (minus.v[1] + plus.v[1] + dv[1])];
+        let t = [half * (minus.t[0] + plus.t[0] + dt[0]), half * (minus.t[1] + plus.t[1] + dt[1])];
         star(v, t, n)
     }
 }
@@ -39,6 +39,7 @@ impl Riemann for AcousticCurl {
 #[inline(always)]
 pub(super) fn curl_penalty<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, n: [L; 2]) -> [L; 2] {
     let c = L::splat(-0.5) * minus.c[0].max(plus.c[0]);
-    let jump: [L; 4] = std::array::from_fn(|k| plus.f[k] - minus.f[k]);
-    tensor::times(jump, tangent(n)).map(|a| c * a)
+    let (a, b) = (plus.f, minus.f);
+    let jump = tensor::times([a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]], tangent(n));
+    [c * jump[0], c * jump[1]]
 }

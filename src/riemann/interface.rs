@@ -13,7 +13,10 @@ pub fn interface<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density:
     let normal = current_normal(minus.f, plus.f, n);
     let own = Impedance::new(minus.c, density[0], normal);
     let other = Impedance::new(plus.c, density[1], normal);
-    let both = [0, 1].map(|k| density[0].mul_add(minus.c[k], density[1] * plus.c[k]));
+    let both = [
+        density[0].mul_add(minus.c[0], density[1] * plus.c[0]),
+        density[0].mul_add(minus.c[1], density[1] * plus.c[1]),
+    ];
     let sum = Impedance::new(both, L::splat(1.0), normal);
     // Relative to v^-, so that uniform motion gives exactly v^-.
     let dv = [plus.v[0] - minus.v[0], plus.v[1] - minus.v[1]];

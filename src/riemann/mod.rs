@@ -113,7 +113,7 @@ impl<L: Lane> Impedance<L> {
     /// Z^-1 a.
     #[inline(always)]
     pub fn solve(&self, a: [L; 2]) -> [L; 2] {
-        self.act(self.z.map(|z| L::splat(1.0) / z), a)
+        self.act([L::splat(1.0) / self.z[0], L::splat(1.0) / self.z[1]], a)
     }
 
     #[inline(always)]
@@ -126,7 +126,7 @@ impl<L: Lane> Impedance<L> {
 /// The current normal (cof F^- + cof F^+) N, normalised: splitting along N itself is not objective.
 #[inline(always)]
 pub fn current_normal<L: Lane>(minus: [L; 4], plus: [L; 4], n: [L; 2]) -> [L; 2] {
-    let sum: [L; 4] = std::array::from_fn(|k| minus[k] + plus[k]);
+    let sum = [minus[0] + plus[0], minus[1] + plus[1], minus[2] + plus[2], minus[3] + plus[3]];
     tensor::normalised(tensor::times(tensor::cofactor(sum), n))
 }
 

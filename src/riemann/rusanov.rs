@@ -1,6 +1,6 @@
 //! Local Lax-Friedrichs (Rusanov) flux.
 
-use super::{Riemann, Trace};
+use super::{Riemann, Trace, star};
 use crate::lane::Lane;
 
 /// Flux* = mean of both sides - c/2 (U^+ - U^-), c the larger current c_p.
@@ -13,9 +13,15 @@ impl Riemann for Rusanov {
         let half = L::splat(0.5);
         let c = half * minus.c[0].max(plus.c[0]);
         let jump = c * density;
-        let v: [L; 2] = std::array::from_fn(|i| half * (minus.v[i] + plus.v[i]));
-        let f: [L; 4] = std::array::from_fn(|k| -(v[k / 2] * n[k % 2]) - c * (plus.f[k] - minus.f[k]));
-        let p: [L; 2] = std::array::from_fn(|i| -(half * (minus.t[i] + plus.t[i])) - jump * (plus.v[i] - minus.v[i]));
-        [f[0], f[1], f[2], f[3], p[0], p[1]]
+        let v = [half * (minus.v[0] + plus.v[0]), half * (minus.v[1] + plus.v[1])];
+        let t = [half * (minus.t[0] + plus.t[0]), half * (minus.t[1] + plus.t[1])];
+        let mut flux = star(v, t, n);
+        for k in 0..4 {
+            flux[k] = flux[k] - c * (plus.f[k] - minus.f[k]);
+        }
+        for i in 0..2 {
+            flux[4 + i] = flux[4 + i] - jump * (plus.v[i] - minus.v[i]);
+        }
+        flux
     }
 }

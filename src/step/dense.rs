@@ -8,13 +8,13 @@ use crate::operators::Matrix;
 #[inline(always)]
 pub fn apply<L: Lanes, C: Coefficient, const K: usize>(matrix: &Matrix<C>, input: &[F8], out: &mut [F8]) {
     let (rows, columns) = (matrix.rows, matrix.columns);
-    let fields: [&[F8]; K] = std::array::from_fn(|k| &input[k * columns..(k + 1) * columns]);
+    let input = &input[..K * columns];
     for r in 0..rows {
         let mut sum = [L::zero(); K];
         for (c, entry) in matrix.row(r).iter().enumerate() {
             let entry = entry.lanes::<L>();
             for k in 0..K {
-                sum[k] = entry.mul_add(L::load(&fields[k][c]), sum[k]);
+                sum[k] = entry.mul_add(L::load(&input[k * columns + c]), sum[k]);
             }
         }
         for k in 0..K {
@@ -35,7 +35,11 @@ pub fn add_scaled<L: Lanes>(a: f64, x: &[F8], y: &mut [F8]) {
 /// The numbers of field k at index i, for K fields of length `len`.
 #[inline(always)]
 pub fn gather<L: Lanes, const K: usize>(fields: &[F8], len: usize, i: usize) -> [L; K] {
-    std::array::from_fn(|k| L::load(&fields[k * len + i]))
+    let mut out = [L::zero(); K];
+    for k in 0..K {
+        out[k] = L::load(&fields[k * len + i]);
+    }
+    out
 }
 
 /// Writes the numbers of K fields of length `len` at index i.

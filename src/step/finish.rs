@@ -3,7 +3,7 @@
 use super::volume::Metric;
 use super::{Method, Phase, Scheme, Scratch, Survey, curl, dense};
 use crate::boundary::{FacePoint, TimeNode};
-use crate::lane::{F8, LANES, Lanes, Work};
+use crate::lane::{F8, LANES, Lanes, Work, load_array};
 use crate::mesh::map;
 use crate::operators::Neighbour;
 use crate::riemann::{Riemann, TRACE, Trace, interface};
@@ -66,7 +66,7 @@ impl Work for Block<'_> {
 /// A trace of eight lanes from its ten numbers.
 #[inline(always)]
 fn load<L: Lanes>(numbers: &[F8]) -> Trace<L> {
-    let x: [L; TRACE] = std::array::from_fn(|k| L::load(&numbers[k]));
+    let x = load_array::<L, TRACE>(numbers);
     Trace { f: [x[0], x[1], x[2], x[3]], v: [x[4], x[5]], t: [x[6], x[7]], c: [x[8], x[9]] }
 }
 
@@ -85,7 +85,7 @@ impl Block<'_> {
         let metric = Metric::of(&operators.geometry, self.block, n);
         let density = self.scheme.laws[operators.blocks.material[self.block]].density();
         for face in 0..4 {
-            let normal: [L; 2] = std::array::from_fn(|k| L::load(&metric.normal[2 * face + k]));
+            let normal = load_array::<L, 2>(&metric.normal[2 * face..2 * face + 2]);
             let length = L::load(&metric.length[face]);
             for point in 0..m {
                 let at = ((4 * self.block + face) * m + point) * TRACE;
@@ -95,7 +95,9 @@ impl Block<'_> {
                 let (minus, plus) = (load::<L>(own), load::<L>(&other));
                 let flux = riemann.flux(&minus, &plus, normal, L::splat(density));
                 let mut stored = [F8::ZERO; 6];
-                (0..6).for_each(|k| flux[k].store(&mut stored[k]));
+                for k in 0..6 {
+                    flux[k].store(&mut stored[k]);
+                }
                 self.special(face, point, own, &other, &mut stored);
                 let scale = length * L::splat(operators.line.basis.weights[point]);
                 for k in 0..6 {
@@ -171,15 +173,16 @@ impl Block<'_> {
         let (line, m, n) = (&operators.line, operators.line.m, operators.nodes());
         let metric = Metric::of(&operators.geometry, self.block, n);
         for k in 0..6 {
-            let face = |f: usize| &self.scratch.nodes.lift[(f * 6 + k) * m..(f * 6 + k + 1) * m];
-            let lifts = [face(0), face(1), face(2), face(3)];
+            let lift = &self.scratch.nodes.lift[..24 * m];
+            let (left, right) = (&lift[k * m..], &lift[(6 + k) * m..]);
+            let (bottom, top) = (&lift[(12 + k) * m..], &lift[(18 + k) * m..]);
             for i in 0..m {
                 for j in 0..m {
                     let a = i * m + j;
-                    let mut sum = L::splat(line.ends[0][i]) * L::load(&lifts[0][j]);
-                    sum = L::splat(line.ends[1][i]).mul_add(L::load(&lifts[1][j]), sum);
-                    sum = L::splat(line.ends[0][j]).mul_add(L::load(&lifts[2][i]), sum);
-                    sum = L::splat(line.ends[1][j]).mul_add(L::load(&lifts[3][i]), sum);
+                    let mut sum = L::splat(line.ends[0][i]) * L::load(&left[j]);
+                    sum = L::splat(line.ends[1][i]).mul_add(L::load(&right[j]), sum);
+                    sum = L::splat(line.ends[0][j]).mul_add(L::load(&bottom[i]), sum);
+                    sum = L::splat(line.ends[1][j]).mul_add(L::load(&top[i]), sum);
                     let rate = L::load(&self.rate[k * n + a]);
                     (rate - sum * L::load(&metric.inverse_mass[a])).store(&mut self.rate[k * n + a]);
                 }

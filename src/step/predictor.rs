@@ -2,7 +2,7 @@
 
 use super::dense::{add_scaled, apply, gather, scatter};
 use crate::basis::TimeBasis;
-use crate::lane::{Coefficient, F8, Lanes};
+use crate::lane::{Coefficient, F8, Lanes, load_array};
 use crate::material::Material;
 use crate::operators::PointMatrices;
 
@@ -96,16 +96,15 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         apply::<L, C, 6>(&self.matrices.slope[1], q, &mut slope[1]);
         for p in 0..np {
             let (a, b) = (gather::<L, 6>(&slope[0], np, p), gather::<L, 6>(&slope[1], np, p));
-            let m: [L; 4] = std::array::from_fn(|k| L::load(&self.metric[4 * p + k]));
-            // D_a = sum_b dxi_b/dX_a d/dxi_b.
-            let along = |field: usize, axis: usize| a[field].mul_add(m[axis], b[field] * m[2 + axis]);
+            // D_a = sum_b dxi_b/dX_a d/dxi_b, from (xi1, xi2) slopes and the metric [b][a].
+            let [m11, m12, m21, m22] = load_array::<L, 4>(&self.metric[4 * p..4 * p + 4]);
             let values = [
-                along(4, 0),
-                along(4, 1),
-                along(5, 0),
-                along(5, 1),
-                along(0, 0) + along(1, 1),
-                along(2, 0) + along(3, 1),
+                a[4].mul_add(m11, b[4] * m21),
+                a[4].mul_add(m12, b[4] * m22),
+                a[5].mul_add(m11, b[5] * m21),
+                a[5].mul_add(m12, b[5] * m22),
+                a[0].mul_add(m11, b[0] * m21) + a[1].mul_add(m12, b[1] * m22),
+                a[2].mul_add(m11, b[2] * m21) + a[3].mul_add(m12, b[3] * m22),
             ];
             scatter(values, rate, np, p);
         }

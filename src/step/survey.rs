@@ -181,10 +181,9 @@ fn examine<L: Lanes, M: Material>(law: &M, f: &[F8], count: usize, u: &[F8]) -> 
     for x in u {
         poison = L::load(x).mul_add(L::zero(), poison);
     }
-    let store = |x: L| {
-        let mut out = F8::ZERO;
-        x.store(&mut out);
-        out
-    };
-    Found { speed: store(speed), min_j: store(min_j), poison: store(poison) }
+    let mut found = Found { speed: F8::ZERO, min_j: F8::ZERO, poison: F8::ZERO };
+    speed.store(&mut found.speed);
+    min_j.store(&mut found.min_j);
+    poison.store(&mut found.poison);
+    found
 }

@@ -4,7 +4,7 @@
 //! are exact integrals on bilinear cells, so the two forms agree there to rounding.
 
 use super::dense::gather;
-use crate::lane::{F8, Lanes};
+use crate::lane::{F8, Lanes, load_array};
 use crate::material::Material;
 use crate::operators::{Geometry, Line};
 use crate::riemann::TRACE;
@@ -79,7 +79,7 @@ impl<'a> Metric<'a> {
 pub fn volume<L: Lanes>(line: &Line, metric: Metric, arrays: &mut Arrays, rate: &mut [F8]) {
     let (m, n) = (line.m, line.m * line.m);
     for a in 0..n {
-        let c: [L; 4] = std::array::from_fn(|k| L::load(&metric.cofactor[4 * a + k]));
+        let c = load_array::<L, 4>(&metric.cofactor[4 * a..4 * a + 4]);
         let p = gather::<L, 4>(&arrays.mean[6 * n..], n, a);
         for b in 0..2 {
             for i in 0..2 {
@@ -93,7 +93,7 @@ pub fn volume<L: Lanes>(line: &Line, metric: Metric, arrays: &mut Arrays, rate: 
             let a = i * m + j;
             let weight = L::splat(line.basis.weights[i] * line.basis.weights[j]);
             let inverse_mass = L::load(&metric.inverse_mass[a]);
-            let c: [L; 4] = std::array::from_fn(|k| L::load(&metric.cofactor[4 * a + k]));
+            let c = load_array::<L, 4>(&metric.cofactor[4 * a..4 * a + 4]);
             let mut slope = [[L::zero(); 2]; 2];
             let mut weak = [L::zero(); 2];
             for k in 0..m {
@@ -126,7 +126,7 @@ pub fn traces<L: Lanes, M: Material>(law: &M, line: &Line, metric: Metric, mean:
     let (m, n) = (line.m, line.m * line.m);
     for face in 0..4 {
         let ends = &line.ends[face % 2];
-        let normal: [L; 2] = std::array::from_fn(|k| L::load(&metric.normal[2 * face + k]));
+        let normal = load_array::<L, 2>(&metric.normal[2 * face..2 * face + 2]);
         for point in 0..m {
             let mut sum = [L::zero(); 10];
             for (k, &end) in ends.iter().enumerate() {
@@ -141,7 +141,9 @@ pub fn traces<L: Lanes, M: Material>(law: &M, line: &Line, metric: Metric, mean:
             let c = law.speeds(f, normal);
             let values = [f[0], f[1], f[2], f[3], sum[4], sum[5], t[0], t[1], c[0], c[1]];
             let out = &mut traces[(face * m + point) * TRACE..(face * m + point + 1) * TRACE];
-            values.into_iter().zip(out).for_each(|(value, out)| value.store(out));
+            for (value, out) in values.into_iter().zip(out) {
+                value.store(out);
+            }
         }
     }
 }
