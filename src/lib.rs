@@ -12,6 +12,7 @@
 
 pub mod error;
 pub mod lane;
+pub mod quadrature;
 pub mod mesh;
 pub mod cloud;
 pub mod io;
