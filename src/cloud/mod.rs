@@ -1,5 +1,9 @@
 //! The cloud of material points, sorted by cell.
 
+pub mod seed;
+
+pub use seed::{Layout, default_layout, seed, seed_by};
+
 /// Material points: for each cell a run of points with their parent coordinates.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cloud {

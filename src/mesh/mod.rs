@@ -1,5 +1,16 @@
 //! Quadrilateral meshes: geometry and groups only; a mesh knows nothing of a solver.
 
+pub mod check;
+mod error;
+pub mod faces;
+pub mod map;
+pub mod quality;
+pub mod structured;
+
+pub use error::Error;
+pub use faces::links;
+pub use structured::rectangle;
+
 /// A mesh of bilinear quadrilaterals in the initial configuration, in metres.
 ///
 /// Corner `k` of a cell has the parent coordinates (0,0), (1,0), (1,1), (0,1) for k = 0..4, and the
@@ -22,6 +33,23 @@ pub struct Mesh {
     pub edge_groups: Vec<String>,
     /// Number of each cell in the file that it came from (for messages and output).
     pub original: Vec<u64>,
+}
+
+impl Mesh {
+    /// The corners of a cell, in m: corner k at the parent coordinates (0,0), (1,0), (1,1), (0,1).
+    pub fn corners(&self, cell: usize) -> [[f64; 2]; 4] {
+        self.cells[cell].map(|node| self.nodes[node])
+    }
+
+    /// The number that messages give to a cell: that of the file, or its index from 1 where there is none.
+    pub fn number(&self, cell: usize) -> u64 {
+        self.original.get(cell).copied().unwrap_or(cell as u64 + 1)
+    }
+
+    /// The two nodes of a face, in the direction of increasing parent coordinate.
+    pub fn face_nodes(&self, cell: usize, face: usize) -> [usize; 2] {
+        FACE_CORNERS[face].map(|corner| self.cells[cell][corner])
+    }
 }
 
 /// A boundary edge: local face `face` of cell `cell` belongs to boundary group `group`.

@@ -1,0 +1,162 @@
+//! From raw lists to a mesh that can be computed on.
+
+use super::{Error, Mesh, map, quality};
+
+/// Corners below this scaled Jacobian are refused. The time step shrinks in proportion to it, and the inverse
+/// map of such a cell keeps no more than half of the digits.
+pub const SMALLEST_SCALED_JACOBIAN: f64 = 1e-8;
+
+/// The local face that each face of a reversed cell becomes: corner 0 stays, xi1 and xi2 are exchanged.
+const REVERSED: [usize; 4] = [2, 3, 0, 1];
+
+impl Mesh {
+    /// The mesh with every cell counter-clockwise (corner 0 stays where it was), or the first fault of its cells:
+    /// lists that do not fit, coordinates that are not finite, repeated nodes, corners that are flat or concave.
+    pub fn checked(mut self) -> Result<Self, Error> {
+        self.consistent()?;
+        let mut reversed = vec![false; self.cells.len()];
+        for (cell, turned) in reversed.iter_mut().enumerate() {
+            self.distinct(cell)?;
+            if map::area(&self.corners(cell)) < 0.0 {
+                self.cells[cell].swap(1, 3);
+                *turned = true;
+            }
+            self.convex(cell)?;
+        }
+        for edge in self.edges.iter_mut().filter(|edge| reversed[edge.cell]) {
+            edge.face = REVERSED[edge.face];
+        }
+        Ok(self)
+    }
+
+    /// All indices point into their lists, and there are cells.
+    pub fn consistent(&self) -> Result<(), Error> {
+        let refuse = |what: String| Err(Error::Inconsistent { what });
+        let count = self.cells.len();
+        if count == 0 {
+            return Err(Error::Empty);
+        }
+        if self.cell_group.len() != count || self.original.len() != count {
+            let (groups, numbers) = (self.cell_group.len(), self.original.len());
+            return refuse(format!("{count} cells, {groups} group indices, {numbers} cell numbers"));
+        }
+        if let Some(cell) = (0..count).find(|&c| self.cells[c].iter().any(|&n| n >= self.nodes.len())) {
+            return refuse(format!("cell {} names a node beyond the {} nodes", self.number(cell), self.nodes.len()));
+        }
+        if let Some(cell) = (0..count).find(|&c| self.cell_group[c] >= self.groups.len()) {
+            return refuse(format!("cell {} has no group", self.number(cell)));
+        }
+        let fits = |e: &&super::BoundaryEdge| e.cell < count && e.face < 4 && e.group < self.edge_groups.len();
+        match self.edges.iter().find(|e| !fits(e)) {
+            Some(edge) => refuse(format!("{edge:?} points beyond the lists")),
+            None => Ok(()),
+        }
+    }
+
+    fn distinct(&self, cell: usize) -> Result<(), Error> {
+        let number = self.number(cell);
+        let corners = self.corners(cell);
+        if let Some(&at) = corners.iter().find(|x| !(x[0].is_finite() && x[1].is_finite())) {
+            return Err(Error::NotFinite { cell: number, at });
+        }
+        let nodes = self.cells[cell];
+        let repeated = |k: &usize| nodes[k + 1..].contains(&nodes[*k]) || corners[k + 1..].contains(&corners[*k]);
+        match (0..4).find(repeated) {
+            Some(k) => Err(Error::Repeated { cell: number, at: corners[k] }),
+            None => Ok(()),
+        }
+    }
+
+    fn convex(&self, cell: usize) -> Result<(), Error> {
+        let corners = self.corners(cell);
+        let scaled = quality::corner_jacobians(&corners);
+        let worst = (1..4).fold(0, |worst, k| if scaled[k] < scaled[worst] { k } else { worst });
+        // Written so that NaN (edges whose squares under- or overflow) is refused too.
+        if scaled.iter().all(|s| *s >= SMALLEST_SCALED_JACOBIAN) {
+            return Ok(());
+        }
+        Err(Error::Inverted { cell: self.number(cell), at: corners[worst], scaled: scaled[worst], corners })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Link, links, rectangle};
+
+    fn single(corners: [[f64; 2]; 4]) -> Mesh {
+        Mesh { nodes: corners.to_vec(), original: vec![77], ..rectangle([1.0, 1.0], [1, 1]).unwrap() }
+    }
+
+    #[test]
+    fn a_good_mesh_is_left_as_it_is() {
+        let mesh = rectangle([3.0, 1.0], [3, 2]).unwrap();
+        assert_eq!(mesh.clone().checked().unwrap(), mesh);
+    }
+
+    #[test]
+    fn clockwise_cells_are_turned_around_corner_0_and_their_edges_follow() {
+        let good = rectangle([2.0, 2.0], [2, 2]).unwrap();
+        let mut mesh = good.clone();
+        for cell in [0, 3] {
+            mesh.cells[cell].swap(1, 3);
+            for edge in mesh.edges.iter_mut().filter(|e| e.cell == cell) {
+                edge.face = REVERSED[edge.face];
+            }
+        }
+        let checked = mesh.checked().unwrap();
+        assert_eq!(checked, good);
+        assert_eq!(links(&checked).unwrap()[3][1], Link::Boundary(1));
+    }
+
+    #[test]
+    fn concave_and_crossed_and_flat_cells_are_refused_by_number_and_corner() {
+        let concave = single([[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]]).checked().unwrap_err();
+        assert!(matches!(concave, Error::Inverted { cell: 77, at: [0.2, 0.2], .. }), "{concave}");
+        let crossed = single([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]).checked();
+        assert!(matches!(crossed, Err(Error::Inverted { cell: 77, .. })), "{crossed:?}");
+        let flat = single([[0.0, 0.0], [1.0, 0.0], [0.5, 0.5], [0.0, 1.0]]).checked();
+        assert!(matches!(flat, Err(Error::Inverted { at: [0.5, 0.5], .. })), "{flat:?}");
+        let line = single([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]]).checked();
+        assert!(matches!(line, Err(Error::Inverted { .. })), "{line:?}");
+    }
+
+    #[test]
+    fn repeated_nodes_are_refused() {
+        let collapsed = single([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]]).checked();
+        assert_eq!(collapsed, Err(Error::Repeated { cell: 77, at: [1.0, 0.0] }));
+        let mut same = rectangle([1.0, 1.0], [1, 1]).unwrap();
+        same.cells[0][2] = same.cells[0][1];
+        assert!(matches!(same.checked(), Err(Error::Repeated { .. })));
+    }
+
+    #[test]
+    fn infinite_coordinates_and_broken_lists_are_refused() {
+        let infinite = single([[0.0, 0.0], [f64::INFINITY, 0.0], [1.0, 1.0], [0.0, 1.0]]).checked();
+        assert!(matches!(infinite, Err(Error::NotFinite { cell: 77, .. })));
+        assert_eq!(Mesh::default().checked(), Err(Error::Empty));
+        let good = rectangle([1.0, 1.0], [1, 1]).unwrap();
+        let broken: [fn(&mut Mesh); 6] = [
+            |m| m.cells[0][1] = 99,
+            |m| m.cell_group[0] = 1,
+            |m| m.cell_group.clear(),
+            |m| m.edges[0].face = 4,
+            |m| m.edges[0].cell = 1,
+            |m| m.edges[0].group = 4,
+        ];
+        for break_it in broken {
+            let mut mesh = good.clone();
+            break_it(&mut mesh);
+            assert!(matches!(links(&mesh), Err(Error::Inconsistent { .. })));
+            assert!(matches!(mesh.checked(), Err(Error::Inconsistent { .. })));
+        }
+    }
+
+    #[test]
+    fn the_smallest_and_the_largest_sizes_of_f64_do_not_pass_as_good_by_overflow() {
+        for size in [1e-200, 1e200] {
+            let square = single([[0.0, 0.0], [size, 0.0], [size, size], [0.0, size]]);
+            assert!(square.checked().is_err(), "{size}");
+        }
+    }
+}
