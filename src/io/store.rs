@@ -31,7 +31,7 @@ pub enum ArrayRef<'a> {
     I64(&'a [i64]),
     /// Unsigned integers.
     U64(&'a [u64]),
-    /// Counts or indices, stored as unsigned integers of 64 bits.
+    /// Counts or indices, stored as signed integers, with which other programs compute best.
     Index(&'a [usize]),
     /// Texts; the shape is one number.
     Text(&'a [String]),
@@ -71,7 +71,7 @@ pub fn write_arrays(
             ArrayRef::I64(values) => hdf5::put(file, name, shape, values),
             ArrayRef::U64(values) => hdf5::put(file, name, shape, values),
             ArrayRef::Index(values) => {
-                let values: Vec<u64> = values.iter().map(|&v| v as u64).collect();
+                let values: Vec<i64> = values.iter().map(|&v| v as i64).collect();
                 hdf5::put(file, name, shape, &values)
             }
             ArrayRef::Text(values) => hdf5::put_texts(file, name, values),
@@ -96,7 +96,7 @@ fn fingerprint<'a>(
             ArrayRef::F64(values) => digest.text("f64").reals(values.iter().copied()),
             ArrayRef::I64(values) => digest.text("i64").counts(values.iter().map(|&v| v as u64)),
             ArrayRef::U64(values) => digest.text("u64").counts(values.iter().copied()),
-            ArrayRef::Index(values) => digest.text("u64").counts(values.iter().map(|&v| v as u64)),
+            ArrayRef::Index(values) => digest.text("i64").counts(values.iter().map(|&v| v as u64)),
             ArrayRef::Text(values) => values.iter().fold(digest.text("text"), |digest, text| digest.text(text)),
         };
     }
