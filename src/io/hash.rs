@@ -1,0 +1,90 @@
+//! Fingerprints of meshes and clouds: blake3 of the exact bits, as hexadecimal text.
+
+use crate::cloud::Cloud;
+use crate::mesh::Mesh;
+
+/// Feeds counts, numbers and texts to blake3, each list with its length, so that no two contents look alike.
+#[derive(Debug, Default)]
+pub struct Digest(blake3::Hasher);
+
+impl Digest {
+    /// Nothing fed yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Bytes, with their count before them.
+    pub fn bytes(&mut self, bytes: &[u8]) -> &mut Self {
+        self.count(bytes.len());
+        self.0.update(bytes);
+        self
+    }
+
+    /// A text.
+    pub fn text(&mut self, text: &str) -> &mut Self {
+        self.bytes(text.as_bytes())
+    }
+
+    /// A count or an index.
+    pub fn count(&mut self, count: usize) -> &mut Self {
+        self.0.update(&(count as u64).to_le_bytes());
+        self
+    }
+
+    /// Unsigned numbers.
+    pub fn counts(&mut self, values: impl ExactSizeIterator<Item = u64>) -> &mut Self {
+        self.words(values)
+    }
+
+    /// Real numbers, by their bits.
+    pub fn reals(&mut self, values: impl ExactSizeIterator<Item = f64>) -> &mut Self {
+        self.words(values.map(f64::to_bits))
+    }
+
+    /// The fingerprint: 64 hexadecimal digits.
+    pub fn finish(&self) -> String {
+        self.0.finalize().to_hex().to_string()
+    }
+
+    fn words(&mut self, values: impl ExactSizeIterator<Item = u64>) -> &mut Self {
+        self.count(values.len());
+        let mut buffer = Vec::with_capacity(8 * 1024);
+        for value in values {
+            buffer.extend_from_slice(&value.to_le_bytes());
+            if buffer.len() >= 8 * 1024 {
+                self.0.update(&buffer);
+                buffer.clear();
+            }
+        }
+        self.0.update(&buffer);
+        self
+    }
+}
+
+/// The fingerprint of a mesh: nodes, cells, groups, edges, original numbers.
+pub fn of_mesh(mesh: &Mesh) -> String {
+    let mut digest = Digest::new();
+    digest.text("mesh").reals(mesh.nodes.as_flattened().iter().copied());
+    digest.counts(mesh.cells.as_flattened().iter().map(|&n| n as u64));
+    digest.counts(mesh.cell_group.iter().map(|&n| n as u64));
+    digest.count(mesh.edges.len());
+    for edge in &mesh.edges {
+        digest.count(edge.cell).count(edge.face).count(edge.group);
+    }
+    for names in [&mesh.groups, &mesh.edge_groups] {
+        digest.count(names.len());
+        for name in names {
+            digest.text(name);
+        }
+    }
+    digest.counts(mesh.original.iter().copied());
+    digest.finish()
+}
+
+/// The fingerprint of a cloud: points per cell and their parent coordinates.
+pub fn of_cloud(cloud: &Cloud) -> String {
+    let mut digest = Digest::new();
+    digest.text("cloud").counts(cloud.first.iter().map(|&n| n as u64));
+    digest.reals(cloud.xi.as_flattened().iter().copied());
+    digest.finish()
+}

@@ -1,0 +1,71 @@
+//! `mesh.h5`: a mesh between the steps of the pipeline.
+//!
+//! Arrays: `nodes` (n, 2) in m; `cells` (c, 4), counter-clockwise; `cell_group` (c); `groups`; `edges` (e, 3) as cell,
+//! local face, group; `edge_groups`; `original` (c), the numbers in the file that the mesh came from.
+
+use std::path::Path;
+
+use super::store::{ArrayRef, Format, Store, write_arrays};
+use crate::error::Result;
+use crate::mesh::{BoundaryEdge, Mesh};
+
+/// The format of `mesh.h5`.
+pub const FORMAT: Format = Format { name: "dgmpm mesh", version: 1, remedy: "write it again by `dgmpm mesh`" };
+
+/// Writes a mesh.
+pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<()> {
+    let edges: Vec<usize> = mesh.edges.iter().flat_map(|e| [e.cell, e.face, e.group]).collect();
+    let arrays = [
+        ("nodes", vec![mesh.nodes.len(), 2], ArrayRef::F64(mesh.nodes.as_flattened())),
+        ("cells", vec![mesh.cells.len(), 4], ArrayRef::Index(mesh.cells.as_flattened())),
+        ("cell_group", vec![mesh.cell_group.len()], ArrayRef::Index(&mesh.cell_group)),
+        ("groups", vec![mesh.groups.len()], ArrayRef::Text(&mesh.groups)),
+        ("edges", vec![mesh.edges.len(), 3], ArrayRef::Index(&edges)),
+        ("edge_groups", vec![mesh.edge_groups.len()], ArrayRef::Text(&mesh.edge_groups)),
+        ("original", vec![mesh.original.len()], ArrayRef::U64(&mesh.original)),
+    ];
+    write_arrays(path, FORMAT, &[], &arrays)
+}
+
+/// Reads a mesh; every index in it is within range.
+pub fn read_mesh(path: &Path) -> Result<Mesh> {
+    let mut store = Store::read(path, FORMAT)?;
+    let nodes = store.reals("nodes", &[2])?;
+    let cells = store.indices("cells", &[4])?;
+    let edges = store.indices("edges", &[3])?;
+    let mesh = Mesh {
+        nodes: nodes.as_chunks::<2>().0.to_vec(),
+        cells: cells.as_chunks::<4>().0.to_vec(),
+        cell_group: store.indices("cell_group", &[])?,
+        groups: store.texts("groups")?,
+        edges: edges.as_chunks().0.iter().map(|&[cell, face, group]| BoundaryEdge { cell, face, group }).collect(),
+        edge_groups: store.texts("edge_groups")?,
+        original: store.unsigned("original", &[])?,
+    };
+    match fault(&mesh) {
+        Some(what) => Err(store.error(what)),
+        None => Ok(mesh),
+    }
+}
+
+/// What is wrong with the numbers of a mesh, if anything: lengths and ranges, not geometry.
+fn fault(mesh: &Mesh) -> Option<String> {
+    let cells = mesh.cells.len();
+    if mesh.cell_group.len() != cells || mesh.original.len() != cells {
+        let (groups, original) = (mesh.cell_group.len(), mesh.original.len());
+        return Some(format!("{cells} cells, but {groups} values of `cell_group` and {original} of `original`"));
+    }
+    if let Some(n) = mesh.nodes.iter().position(|x| !x.iter().all(|v| v.is_finite())) {
+        return Some(format!("node {n} has a coordinate that is not finite"));
+    }
+    let bad_cell = mesh.cells.iter().position(|cell| cell.iter().any(|&n| n >= mesh.nodes.len()));
+    if let Some(c) = bad_cell {
+        return Some(format!("cell {c} refers to nodes {:?}, but there are {}", mesh.cells[c], mesh.nodes.len()));
+    }
+    if let Some(c) = mesh.cell_group.iter().position(|&g| g >= mesh.groups.len()) {
+        return Some(format!("cell {c} is of group {}, but there are {}", mesh.cell_group[c], mesh.groups.len()));
+    }
+    let good_edge = |e: &BoundaryEdge| e.cell < cells && e.face < 4 && e.group < mesh.edge_groups.len();
+    let bad_edge = mesh.edges.iter().position(|e| !good_edge(e))?;
+    Some(format!("boundary edge {bad_edge} refers to a cell, face or group that does not exist"))
+}

@@ -1,0 +1,60 @@
+//! Files that appear under their name only when they are whole.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::error::{Error, Result};
+
+/// A file under a temporary name beside its target: [`Pending::commit`] renames it, dropping it removes it.
+#[derive(Debug)]
+pub struct Pending {
+    target: PathBuf,
+    temporary: PathBuf,
+}
+
+impl Pending {
+    /// Reserves a temporary name in the folder of `target`, and makes that folder if it does not exist.
+    pub fn new(target: &Path) -> Result<Self> {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let name = target.file_name().ok_or_else(|| Error::output(target, "this is not the name of a file"))?;
+        if target.is_dir() {
+            return Err(Error::output(target, "a folder of this name exists"));
+        }
+        if let Some(folder) = target.parent().filter(|f| !f.as_os_str().is_empty()) {
+            fs::create_dir_all(folder).map_err(|e| Error::output(folder, e))?;
+        }
+        let mut part = name.to_owned();
+        part.push(format!(".{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
+        Ok(Self { target: target.to_owned(), temporary: target.with_file_name(part) })
+    }
+
+    /// Where to write.
+    pub fn path(&self) -> &Path {
+        &self.temporary
+    }
+
+    /// The name that the file will have.
+    pub fn target(&self) -> &Path {
+        &self.target
+    }
+
+    /// Gives the file its name, in place of what stood there.
+    pub fn commit(self) -> Result<()> {
+        fs::rename(&self.temporary, &self.target).map_err(|e| Error::output(&self.target, e))
+    }
+}
+
+impl Drop for Pending {
+    fn drop(&mut self) {
+        // After a commit there is nothing to remove; before it, a file that cannot be removed does no harm.
+        let _ = fs::remove_file(&self.temporary);
+    }
+}
+
+/// Writes a whole text file: all of it, or nothing.
+pub fn write_text(path: &Path, text: &str) -> Result<()> {
+    let pending = Pending::new(path)?;
+    fs::write(pending.path(), text).map_err(|e| Error::output(path, e))?;
+    pending.commit()
+}

@@ -1,0 +1,115 @@
+//! `snapshots/000123.h5`: the state after a step, one file each, so that a killed run leaves only whole ones.
+//!
+//! Arrays, with M = degree + 1: `time` in s and `step`; `u` (cells, 6, M, M), the grid unknowns F11, F12, F21, F22, p1,
+//! p2 at the Gauss nodes (node i along xi1, j along xi2); `displacement` (cells, 2, M, M) or empty; `internal` (n), the
+//! internal variables point by point.
+
+use std::path::{Path, PathBuf};
+
+use super::store::{ArrayRef, Format, Store, write_arrays};
+use crate::error::{Error, Result};
+
+/// The format of snapshots.
+pub const FORMAT: Format = Format { name: "dgmpm snapshot", version: 1, remedy: "write it again by `dgmpm solve`" };
+
+/// The state at a time.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Snapshot {
+    /// Time, in s.
+    pub time: f64,
+    /// Steps done.
+    pub step: usize,
+    /// Space degree N.
+    pub degree: usize,
+    /// Grid unknowns `[cell][component 0..6][node i * M + j]`: (F11, F12, F21, F22, p1, p2) at the Gauss nodes.
+    pub u: Vec<f64>,
+    /// Displacement `[cell][component 0..2][node]`, in m; empty if it is not integrated.
+    pub displacement: Vec<f64>,
+    /// Internal variables `[point][k]`; empty for elastic laws.
+    pub internal: Vec<f64>,
+}
+
+impl Snapshot {
+    /// Number of cells that the unknowns are for.
+    pub fn cells(&self) -> usize {
+        self.u.len() / (6 * (self.degree + 1).pow(2))
+    }
+
+    fn fault(&self) -> Option<String> {
+        let nodes = (self.degree + 1).pow(2);
+        if !self.u.len().is_multiple_of(6 * nodes) {
+            return Some(format!("{} unknowns are no multiple of 6 x {nodes} (degree {})", self.u.len(), self.degree));
+        }
+        let wanted = 2 * nodes * self.cells();
+        let given = self.displacement.len();
+        (given != 0 && given != wanted).then(|| format!("{given} displacements instead of {wanted} or none"))
+    }
+
+    /// Writes the snapshot, bit for bit.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        if let Some(what) = self.fault() {
+            return Err(Error::output(path, what));
+        }
+        let side = self.degree + 1;
+        let moved = if self.displacement.is_empty() { 0 } else { self.cells() };
+        let arrays = [
+            ("time", vec![], ArrayRef::F64(&[self.time])),
+            ("step", vec![1], ArrayRef::Index(&[self.step])),
+            ("degree", vec![1], ArrayRef::Index(&[self.degree])),
+            ("u", vec![self.cells(), 6, side, side], ArrayRef::F64(&self.u)),
+            ("displacement", vec![moved, 2, side, side], ArrayRef::F64(&self.displacement)),
+            ("internal", vec![self.internal.len()], ArrayRef::F64(&self.internal)),
+        ];
+        write_arrays(path, FORMAT, &[], &arrays)
+    }
+
+    /// Reads a snapshot.
+    pub fn read(path: &Path) -> Result<Self> {
+        let mut store = Store::read(path, FORMAT)?;
+        let mut one = |name: &str| match store.indices(name, &[])?[..] {
+            [value] => Ok(value),
+            _ => Err(store.error(format!("`{name}` is not one number"))),
+        };
+        let (step, degree) = (one("step")?, one("degree")?);
+        if degree > 64 {
+            return Err(store.error(format!("degree {degree} is not of this world")));
+        }
+        let side = degree + 1;
+        Ok(Self {
+            time: store.real("time")?,
+            step,
+            degree,
+            u: store.reals("u", &[6, side, side])?,
+            displacement: store.reals("displacement", &[2, side, side])?,
+            internal: store.reals("internal", &[])?,
+        })
+        .and_then(|snapshot| match snapshot.fault() {
+            Some(what) => Err(store.error(what)),
+            None => Ok(snapshot),
+        })
+    }
+}
+
+/// Where the snapshot after a step stands in its folder: `000123.h5`.
+pub fn path(folder: &Path, step: usize) -> PathBuf {
+    folder.join(format!("{step:06}.h5"))
+}
+
+/// The snapshots of a folder, as (step, file), in the order of steps.
+pub fn list(folder: &Path) -> Result<Vec<(usize, PathBuf)>> {
+    let fail = |e: std::io::Error| {
+        let place = crate::error::Place::file(folder);
+        Error::at(place, format!("cannot be listed: {e}"), "name the folder `snapshots` of a run")
+    };
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(fail)? {
+        let path = entry.map_err(fail)?.path();
+        let is_h5 = path.extension().is_some_and(|e| e == "h5");
+        let step = path.file_stem().and_then(|s| s.to_str()).and_then(|s| s.parse().ok());
+        if let (true, Some(step)) = (is_h5, step) {
+            found.push((step, path));
+        }
+    }
+    found.sort();
+    Ok(found)
+}

@@ -1,0 +1,240 @@
+//! Named arrays and text attributes in one HDF5 file, with the name and version of the format and a fingerprint of the
+//! content. Mesh, cloud and snapshot files are stores, and so may anything else be that has to outlive a process.
+//!
+//! The fingerprint (attribute `content`) covers every array and attribute: a file that was damaged is refused by one
+//! message. A file without it, written by another program, is read as it is.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::hash::Digest;
+use super::hdf5::{self, Reader, Values};
+use crate::error::{Error, Result};
+
+/// What a file is, and by which command it is made again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Format {
+    /// The name, such as `dgmpm mesh`.
+    pub name: &'static str,
+    /// The version that this program writes; it reads this one and those before.
+    pub version: u32,
+    /// What to do about a file that cannot be used.
+    pub remedy: &'static str,
+}
+
+/// Values to write.
+#[derive(Debug, Clone, Copy)]
+pub enum ArrayRef<'a> {
+    /// Real numbers.
+    F64(&'a [f64]),
+    /// Signed integers.
+    I64(&'a [i64]),
+    /// Unsigned integers.
+    U64(&'a [u64]),
+    /// Counts or indices, stored as signed integers, with which other programs compute best.
+    Index(&'a [usize]),
+    /// Texts; the shape is one number.
+    Text(&'a [String]),
+}
+
+/// A file as read: take its arrays out by name.
+#[derive(Debug)]
+pub struct Store {
+    place: crate::error::Place,
+    remedy: &'static str,
+    attributes: BTreeMap<String, String>,
+    arrays: BTreeMap<String, (Vec<usize>, Values)>,
+}
+
+const FORMAT: &str = "format";
+const VERSION: &str = "version";
+const CONTENT: &str = "content";
+
+/// Writes a store: text attributes, and arrays (name, shape, values in row-major order). Whole or not at all.
+pub fn write_arrays(
+    path: &Path,
+    format: Format,
+    attributes: &[(&str, String)],
+    arrays: &[(&str, Vec<usize>, ArrayRef)],
+) -> Result<()> {
+    let mut all: BTreeMap<String, String> = attributes.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
+    all.insert(FORMAT.to_owned(), format.name.to_owned());
+    all.insert(VERSION.to_owned(), format.version.to_string());
+    let content = fingerprint(&all, arrays.iter().map(|(name, shape, array)| (*name, shape.as_slice(), *array)));
+    all.insert(CONTENT.to_owned(), content);
+    hdf5::create(path, |file| {
+        for (name, text) in &all {
+            hdf5::put_attribute(file, name, text)?;
+        }
+        arrays.iter().try_for_each(|(name, shape, array)| match *array {
+            ArrayRef::F64(values) => hdf5::put(file, name, shape, values),
+            ArrayRef::I64(values) => hdf5::put(file, name, shape, values),
+            ArrayRef::U64(values) => hdf5::put(file, name, shape, values),
+            ArrayRef::Index(values) => {
+                let values: Vec<i64> = values.iter().map(|&v| v as i64).collect();
+                hdf5::put(file, name, shape, &values)
+            }
+            ArrayRef::Text(values) => hdf5::put_texts(file, name, values),
+        })
+    })
+}
+
+/// The fingerprint of everything in a store but itself; the order of the arrays does not matter.
+fn fingerprint<'a>(
+    attributes: &BTreeMap<String, String>,
+    arrays: impl Iterator<Item = (&'a str, &'a [usize], ArrayRef<'a>)>,
+) -> String {
+    let mut digest = Digest::new();
+    for (name, text) in attributes {
+        digest.text(name).text(text);
+    }
+    let mut arrays: Vec<_> = arrays.collect();
+    arrays.sort_by_key(|(name, _, _)| *name);
+    for (name, shape, array) in arrays {
+        digest.text(name).counts(shape.iter().map(|&n| n as u64));
+        match array {
+            ArrayRef::F64(values) => digest.text("f64").reals(values.iter().copied()),
+            ArrayRef::I64(values) => digest.text("i64").counts(values.iter().map(|&v| v as u64)),
+            ArrayRef::U64(values) => digest.text("u64").counts(values.iter().copied()),
+            ArrayRef::Index(values) => digest.text("i64").counts(values.iter().map(|&v| v as u64)),
+            ArrayRef::Text(values) => values.iter().fold(digest.text("text"), |digest, text| digest.text(text)),
+        };
+    }
+    digest.finish()
+}
+
+impl Store {
+    /// Reads a whole file and checks its format, version and fingerprint.
+    pub fn read(path: &Path, format: Format) -> Result<Self> {
+        let reader = Reader::open(path, format.remedy)?;
+        let mut attributes = BTreeMap::new();
+        for name in reader.attribute_names()? {
+            attributes.insert(name.clone(), reader.attribute(&name)?);
+        }
+        check_format(&reader, &attributes, format)?;
+        let mut arrays = BTreeMap::new();
+        for name in reader.names()? {
+            arrays.insert(name.clone(), reader.get(&name)?);
+        }
+        let store = Self { place: crate::error::Place::file(path), remedy: format.remedy, attributes, arrays };
+        store.check_content()?;
+        Ok(store)
+    }
+
+    fn check_content(&self) -> Result<()> {
+        let Some(content) = self.attributes.get(CONTENT) else { return Ok(()) };
+        let mut attributes = self.attributes.clone();
+        attributes.remove(CONTENT);
+        let arrays = self.arrays.iter().map(|(name, (shape, values))| {
+            let values = match values {
+                Values::F64(v) => ArrayRef::F64(v),
+                Values::I64(v) => ArrayRef::I64(v),
+                Values::U64(v) => ArrayRef::U64(v),
+                Values::Text(v) => ArrayRef::Text(v),
+            };
+            (name.as_str(), shape.as_slice(), values)
+        });
+        if fingerprint(&attributes, arrays) == *content {
+            return Ok(());
+        }
+        Err(self
+            .error("the values are not those that were written (damaged, or changed by hand: then delete `content`)"))
+    }
+
+    /// The error "this file is not as it should be".
+    pub fn error(&self, what: impl Into<String>) -> Error {
+        Error::at(self.place.clone(), what, self.remedy)
+    }
+
+    /// Names of the arrays, sorted.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.arrays.keys().map(String::as_str)
+    }
+
+    /// A text attribute.
+    pub fn attribute(&self, name: &str) -> Result<&str> {
+        let text = self.attributes.get(name).map(String::as_str);
+        text.ok_or_else(|| self.error(format!("the attribute `{name}` is missing")))
+    }
+
+    /// Shape of an array that has not been taken yet.
+    pub fn shape(&self, name: &str) -> Result<&[usize]> {
+        let found = self.arrays.get(name).map(|(shape, _)| shape.as_slice());
+        found.ok_or_else(|| self.error(format!("the array `{name}` is missing")))
+    }
+
+    /// Takes an array out, with its shape.
+    pub fn take(&mut self, name: &str) -> Result<(Vec<usize>, Values)> {
+        self.arrays.remove(name).ok_or_else(|| self.error(format!("the array `{name}` is missing")))
+    }
+
+    /// Takes real numbers whose shape is `[any, tail..]`.
+    pub fn reals(&mut self, name: &str, tail: &[usize]) -> Result<Vec<f64>> {
+        match self.with_tail(name, tail)? {
+            Values::F64(values) => Ok(values),
+            _ => Err(self.error(format!("the array `{name}` does not hold real numbers"))),
+        }
+    }
+
+    /// Takes a single real number.
+    pub fn real(&mut self, name: &str) -> Result<f64> {
+        match self.take(name)? {
+            (_, Values::F64(values)) if values.len() == 1 => Ok(values[0]),
+            _ => Err(self.error(format!("`{name}` is not one real number"))),
+        }
+    }
+
+    /// Takes unsigned integers whose shape is `[any, tail..]`; signed ones will do where none is negative.
+    pub fn unsigned(&mut self, name: &str, tail: &[usize]) -> Result<Vec<u64>> {
+        let values = match self.with_tail(name, tail)? {
+            Values::U64(values) => Some(values),
+            Values::I64(values) => values.into_iter().map(|v| u64::try_from(v).ok()).collect(),
+            _ => None,
+        };
+        values.ok_or_else(|| self.error(format!("the array `{name}` does not hold numbers from 0")))
+    }
+
+    /// Takes counts or indices whose shape is `[any, tail..]`.
+    pub fn indices(&mut self, name: &str, tail: &[usize]) -> Result<Vec<usize>> {
+        let values = self.unsigned(name, tail)?;
+        let values: Option<Vec<usize>> = values.into_iter().map(|v| usize::try_from(v).ok()).collect();
+        values.ok_or_else(|| self.error(format!("the array `{name}` holds a number that is too large")))
+    }
+
+    /// Takes a list of texts.
+    pub fn texts(&mut self, name: &str) -> Result<Vec<String>> {
+        match self.with_tail(name, &[])? {
+            Values::Text(values) => Ok(values),
+            _ => Err(self.error(format!("the array `{name}` does not hold texts"))),
+        }
+    }
+
+    fn with_tail(&mut self, name: &str, tail: &[usize]) -> Result<Values> {
+        let (shape, values) = self.take(name)?;
+        if shape.is_empty() || shape[1..] != *tail {
+            return Err(self.error(format!("the array `{name}` has the shape {shape:?} instead of [n, {tail:?}]")));
+        }
+        Ok(values)
+    }
+}
+
+fn check_format(reader: &Reader, attributes: &BTreeMap<String, String>, format: Format) -> Result<()> {
+    match attributes.get(FORMAT) {
+        Some(name) if name == format.name => {}
+        Some(name) => return Err(reader.error(format!("this is a `{name}` file, not a `{}` file", format.name))),
+        None => return Err(reader.error(format!("not a `{}` file: the attribute `{FORMAT}` is missing", format.name))),
+    }
+    let text = attributes.get(VERSION).map(String::as_str).unwrap_or("");
+    match text.parse::<u32>() {
+        Ok(version) if (1..=format.version).contains(&version) => Ok(()),
+        Ok(version) => {
+            Err(reader.error(format!("its version is {version}; this program reads 1 to {}", format.version)))
+        }
+        Err(_) => Err(reader.error(format!("its version `{text}` is not a number"))),
+    }
+}
+
+/// Whether a file is a store of this program, of whatever format (which output must never replace by another kind).
+pub fn is_store(path: &Path) -> bool {
+    hdf5::peek_attribute(path, FORMAT).is_some_and(|name| name.starts_with("dgmpm "))
+}

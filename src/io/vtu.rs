@@ -1,0 +1,65 @@
+//! VTU files (VTK XML, unstructured grid) for ParaView, VTK, pyvista and meshio.
+//!
+//! Inline base64 of 64-bit numbers, not packed: the packed writer of `vtkio` 0.7.0-rc2 adds an empty block to an array
+//! whose bytes are a multiple of its block, which VTK then reads as a full one.
+
+use std::path::Path;
+
+use vtkio::model::{Attribute, Attributes, ByteOrder, CellType, Cells, UnstructuredGridPiece, Version, VertexNumbers};
+use vtkio::model::{DataSet, Vtk};
+use vtkio::xml::Compressor;
+
+use super::grid::{Field, HighOrderGrid, PointCloud};
+use super::pending::write_text;
+use crate::error::{Error, Result};
+
+/// Writes a grid: Lagrange quadrilaterals (VTK type 70) of degree N, bilinear ones (type 9) for N = 0 and 1.
+pub fn write_grid(path: &Path, grid: &HighOrderGrid) -> Result<()> {
+    grid.check()?;
+    let kind = if grid.degree <= 1 { CellType::Quad } else { CellType::LagrangeQuadrilateral };
+    let cells = cells(grid.cells(), grid.nodes_per_cell(), kind);
+    let data = Attributes { point: attributes(&grid.point_fields), cell: attributes(&grid.cell_fields) };
+    write(path, UnstructuredGridPiece { points: coordinates(&grid.points), cells, data })
+}
+
+/// Writes points as vertices (VTK type 1).
+pub fn write_points(path: &Path, cloud: &PointCloud) -> Result<()> {
+    cloud.check()?;
+    let cells = cells(cloud.points.len(), 1, CellType::Vertex);
+    let data = Attributes { point: attributes(&cloud.fields), cell: Vec::new() };
+    write(path, UnstructuredGridPiece { points: coordinates(&cloud.points), cells, data })
+}
+
+fn coordinates(points: &[[f64; 3]]) -> vtkio::IOBuffer {
+    vtkio::IOBuffer::F64(points.as_flattened().to_vec())
+}
+
+/// Cells that own their `size` points, one cell after the other.
+fn cells(count: usize, size: usize, kind: CellType) -> Cells {
+    let connectivity = (0..(count * size) as u64).collect();
+    let offsets = (1..=count as u64).map(|c| c * size as u64).collect();
+    Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types: vec![kind; count] }
+}
+
+fn attributes(fields: &[Field]) -> Vec<Attribute> {
+    let attribute = |f: &Field| {
+        Attribute::generic(f.name.as_str(), f.kind.components() as u32)
+            .with_data(vtkio::IOBuffer::F64(f.values.clone()))
+    };
+    fields.iter().map(attribute).collect()
+}
+
+fn write(path: &Path, piece: UnstructuredGridPiece) -> Result<()> {
+    let file = Vtk {
+        version: Version::new_xml(1, 0),
+        title: String::new(),
+        byte_order: ByteOrder::LittleEndian,
+        data: DataSet::inline(piece),
+        file_path: None,
+    };
+    let xml = file.try_into_xml_format(Compressor::None, 0).map_err(|e| Error::output(path, e))?;
+    // vtkio marks indices as unsigned, with which meshio cannot compute; below 2^63 the bytes are the same. Only an
+    // attribute can hold a quote, so nothing else is touched.
+    let text = xml.to_string().replace(" type=\"UInt64\"", " type=\"Int64\"");
+    write_text(path, &format!("<?xml version=\"1.0\"?>\n{text}\n"))
+}

@@ -1,0 +1,147 @@
+//! Fields in time on a fixed grid: the uniform grid `mesh`, then a temporal collection that includes it.
+
+use std::path::{Path, PathBuf};
+
+use super::{Item, Written, Xml, attribute, companion, file_name, uniform_grid, write_document};
+use crate::error::{Error, Result};
+use crate::io::grid::{Field, HighOrderGrid, Kind, check_fields, lagrange_quad_lattice};
+use crate::io::hdf5;
+use crate::io::pending::Pending;
+
+/// A series that is being written; its files appear at [`Series::finish`].
+pub struct Series {
+    path: PathBuf,
+    h5: PathBuf,
+    file: hdf5_metno::File,
+    pending: Pending,
+    cells: usize,
+    points: usize,
+    /// Sub-quadrilaterals of each cell.
+    split: usize,
+    steps: Vec<Step>,
+}
+
+/// A time, and what stands in the HDF5 file for it.
+struct Step {
+    time: f64,
+    fields: Vec<Stored>,
+}
+
+/// A field in the HDF5 file.
+struct Stored {
+    name: String,
+    kind: Kind,
+    center: &'static str,
+    dataset: String,
+    rows: usize,
+}
+
+impl Series {
+    /// Starts a series on the points and cells of a grid (its fields are not looked at).
+    pub fn create(path: &Path, grid: &HighOrderGrid) -> Result<Self> {
+        grid.check()?;
+        let h5 = companion(path)?;
+        let pending = Pending::new(&h5)?;
+        let file = hdf5::open_new(pending.path()).map_err(|e| Error::output(&h5, e))?;
+        let n = grid.degree.max(1);
+        let (cells, points, split) = (grid.cells(), grid.points.len(), n * n);
+        let topology = sub_quads(n, cells);
+        let geometry: Vec<f64> = grid.points.iter().flat_map(|p| [p[0], p[1]]).collect();
+        hdf5::put(&file, "mesh/topology", &[cells * split, 4], &topology)
+            .and_then(|()| hdf5::put(&file, "mesh/geometry", &[points, 2], &geometry))
+            .map_err(|e| Error::output(&h5, e))?;
+        Ok(Self { path: path.to_owned(), h5, pending, file, cells, points, split, steps: Vec::new() })
+    }
+
+    /// Adds the fields of a time: with a value at each point, and with a value in each cell.
+    pub fn push(&mut self, time: f64, point_fields: &[Field], cell_fields: &[Field]) -> Result<()> {
+        check_fields(point_fields, self.points)?;
+        check_fields(cell_fields, self.cells)?;
+        let number = self.steps.len();
+        let mut fields = Vec::new();
+        for field in point_fields {
+            fields.push(self.put(number, field, "Node", &field.values)?);
+        }
+        for field in cell_fields {
+            let of_cell = field.values.chunks(field.kind.components());
+            let values: Vec<f64> = of_cell.flat_map(|v| v.repeat(self.split)).collect();
+            fields.push(self.put(number, field, "Cell", &values)?);
+        }
+        self.steps.push(Step { time, fields });
+        Ok(())
+    }
+
+    fn put(&self, number: usize, field: &Field, center: &'static str, values: &[f64]) -> Result<Stored> {
+        let rows = values.len() / field.kind.components();
+        let name = field.name.clone();
+        let written = Stored { name, kind: field.kind, center, dataset: dataset(number, center, field), rows };
+        hdf5::put(&self.file, &written.dataset, &written.shape(), values).map_err(|e| Error::output(&self.h5, e))?;
+        Ok(written)
+    }
+
+    /// Gives both files their names.
+    pub fn finish(self) -> Result<()> {
+        let Self { path, h5, pending, file, cells, points, split, steps } = self;
+        file.flush().and_then(|()| file.close()).map_err(|e| Error::output(&h5, e))?;
+        pending.commit()?;
+        let file = file_name(&h5);
+        write_document(&path, |xml| {
+            uniform_grid(xml, (&file, "mesh"), (cells * split, 4, points), |_| Ok(()))?;
+            let names = [("Name", "series"), ("GridType", "Collection"), ("CollectionType", "Temporal")];
+            let collection = xml.create_element("Grid").with_attributes(names);
+            if steps.is_empty() {
+                return collection.write_empty().map(drop);
+            }
+            collection.write_inner_content(|xml| steps.iter().try_for_each(|s| step(xml, &file, s))).map(drop)
+        })
+    }
+}
+
+impl Stored {
+    fn shape(&self) -> Vec<usize> {
+        match self.kind {
+            Kind::Scalar => vec![self.rows],
+            kind => vec![self.rows, kind.components()],
+        }
+    }
+}
+
+fn dataset(number: usize, center: &str, field: &Field) -> String {
+    format!("step{number:06}/{}/{}", if center == "Node" { "point" } else { "cell" }, field.name)
+}
+
+fn step(xml: &mut Xml, file: &str, step: &Step) -> Written {
+    let names = [("Name", "mesh"), ("GridType", "Uniform")];
+    xml.create_element("Grid").with_attributes(names).write_inner_content(|xml| {
+        let mesh = "xpointer(/Xdmf/Domain/Grid[@GridType='Uniform'][1]/*[self::Topology or self::Geometry])";
+        xml.create_element("xi:include").with_attribute(("xpointer", mesh)).write_empty()?;
+        let time = format!("{:e}", step.time);
+        xml.create_element("Time").with_attribute(("Value", time.as_str())).write_empty()?;
+        step.fields.iter().try_for_each(|field| {
+            let kind = match field.kind {
+                Kind::Scalar => "Scalar",
+                Kind::Vector => "Vector",
+                Kind::Tensor => "Tensor",
+            };
+            let shape = field.shape();
+            let values = Item { file, name: &field.dataset, shape: &shape, number: ("Float", "8") };
+            attribute(xml, &field.name, kind, field.center, &values)
+        })
+    })?;
+    Ok(())
+}
+
+/// The n x n bilinear quadrilaterals of each cell, counter-clockwise, on its nodes in the order of VTK.
+fn sub_quads(n: usize, cells: usize) -> Vec<i64> {
+    let side = n + 1;
+    let mut number = vec![0i64; side * side];
+    for (node, [i, j]) in lagrange_quad_lattice(n).into_iter().enumerate() {
+        number[j * side + i] = node as i64;
+    }
+    let corners = |k: usize| {
+        let at = (k / n) * side + k % n;
+        [at, at + 1, at + side + 1, at + side]
+    };
+    let one: Vec<i64> = (0..n * n).flat_map(|k| corners(k).map(|at| number[at])).collect();
+    (0..cells).flat_map(|c| one.iter().map(move |&node| (c * side * side) as i64 + node)).collect()
+}
