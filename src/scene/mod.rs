@@ -1,1 +1,350 @@
-//! (to come)
+//! The scene file: what is to be computed, as plain data, parsed and checked.
+//!
+//! [`Scene::load`] reads TOML, applies the overrides of `--set`, and checks types, ranges and names; what needs the
+//! mesh is checked by [`Scene::check_groups`]. Every message has file, line and column (or the `--set` at fault)
+//! and lists what exists. A scene knows neither mesh nor solver: names become types elsewhere. Units are SI.
+
+mod expression;
+mod groups;
+mod laws;
+mod names;
+mod origin;
+mod outputs;
+mod read;
+mod reader;
+mod sets;
+mod suggest;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use toml_edit::{Document, DocumentMut};
+
+use crate::error::{Error, Place, Result};
+pub use expression::{Expression, FUNCTIONS, Fault};
+pub use laws::{LAWS, Law, Parameter};
+pub use names::{Field, Flux, Method, Sweeps};
+use origin::{Origin, Part};
+
+/// A whole scene.
+#[derive(Debug, Clone, Serialize)]
+pub struct Scene {
+    /// What it shows, for people; default the name of the file.
+    pub title: String,
+    /// Where the mesh comes from.
+    pub mesh: Mesh,
+    /// Where the material points stand, where a material does not say otherwise.
+    pub cloud: Cloud,
+    /// The materials, at least one.
+    pub materials: Vec<Material>,
+    /// The state at t = 0.
+    pub initial: Initial,
+    /// The conditions on the groups of boundary edges.
+    pub boundaries: Vec<Boundary>,
+    /// Body forces.
+    pub sources: Vec<Source>,
+    /// The control of the curl of F.
+    pub curl: Curl,
+    /// Method, degrees, flux, step size.
+    pub scheme: Scheme,
+    /// End time, in s.
+    pub end: f64,
+    /// What is recorded when.
+    pub outputs: Vec<Output>,
+    #[serde(skip)]
+    origin: Origin,
+}
+
+/// Where the mesh comes from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mesh {
+    /// A Gmsh file, as written in the scene ([`Scene::mesh_path`] resolves it).
+    File(PathBuf),
+    /// [0, size_1] x [0, size_2] with groups left, right, bottom, top and body.
+    Rectangle {
+        /// Edge lengths, in m.
+        size: [f64; 2],
+        /// Cells per direction.
+        cells: [usize; 2],
+    },
+}
+
+/// Where material points stand.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Cloud {
+    /// The pattern in a cell.
+    pub layout: Layout,
+    /// Points per direction k (k^2 in a cell); without meaning for a file.
+    pub per_direction: usize,
+}
+
+/// The pattern of the points in a cell, in parent coordinates.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Layout {
+    /// {1/4, 3/4}, {1/4, 1/2, 3/4}, {i/(k+1)}.
+    Paper,
+    /// {(i - 1/2)/k}.
+    Midpoints,
+    /// The Gauss-Legendre points.
+    Gauss,
+    /// `Midpoints`, each shifted at random.
+    Jitter {
+        /// Seed of the random numbers.
+        seed: u64,
+        /// Largest shift per direction, as a fraction of the spacing 1/k; 0 to 0.5.
+        amount: f64,
+    },
+    /// The points of a file, as written in the scene ([`Scene::resolve`] makes it a path).
+    File(PathBuf),
+}
+
+/// A material on a group of cells.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Material {
+    /// The cell group; `None`: all cells (then it is the only material).
+    pub group: Option<String>,
+    /// Name of the law, one of [`LAWS`].
+    pub law: String,
+    /// rho0, in kg/m^3.
+    pub density: f64,
+    /// The law's parameters: all that [`LAWS`] lists, within their ranges.
+    pub parameters: BTreeMap<String, f64>,
+    /// Where its points stand.
+    pub cloud: Cloud,
+}
+
+/// The state at t = 0; its expressions depend on x and y only.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Initial {
+    /// v, in m/s; default 0.
+    pub velocity: [Expression; 2],
+    /// F11, F12, F21, F22; default the identity.
+    pub deformation: [Expression; 4],
+}
+
+/// The condition on a group of boundary edges.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Boundary {
+    /// The group of edges.
+    pub group: String,
+    /// What holds there.
+    pub condition: Condition,
+}
+
+/// What holds on a boundary.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Condition {
+    /// Rigid frictionless wall, bilateral.
+    Wall {
+        /// v.N of the wall (N the outward normal), in m/s; default 0.
+        speed: Expression,
+    },
+    /// Symmetry line: a wall at rest.
+    Symmetry,
+    /// No traction.
+    Free,
+    /// v = 0.
+    Clamped,
+    /// Prescribed v, in m/s.
+    Velocity([Expression; 2]),
+    /// Prescribed P N, in Pa.
+    Traction([Expression; 2]),
+    /// Nothing comes in.
+    Absorbing,
+}
+
+/// A force on the volume.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Source {
+    /// The cell group; `None`: everywhere.
+    pub group: Option<String>,
+    /// Force per unit mass b, in m/s^2.
+    pub value: [Expression; 2],
+}
+
+/// The control of the curl of F (the instability in compression).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Curl {
+    /// Relaxed locally curl-free projection, theta = 1 - exp(-alpha N c_p dt / h).
+    Lcf {
+        /// alpha; default 3, from N = 4 on 6.
+        alpha: f64,
+    },
+    /// None.
+    Off,
+}
+
+/// Method, degrees, flux and step size.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Scheme {
+    /// The method.
+    pub method: Method,
+    /// N, degree in space, 0 to 6.
+    pub degree: usize,
+    /// N_T, degree in time, 0 to 6; default N.
+    pub time_degree: usize,
+    /// The flux on inner faces; default rusanov.
+    pub flux: Flux,
+    /// The size of a step.
+    pub step: Step,
+    /// The predictor's sweeps.
+    pub sweeps: Sweeps,
+}
+
+/// The size of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Step {
+    /// The paper's: dt = cfl h / ((2N+1) c).
+    Cfl(f64),
+    /// A share of the measured limit: dt = safety limit(method, N) h / c; default 0.9.
+    Safety(f64),
+}
+
+/// Something that is recorded.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Output {
+    /// Its name, unique, fit for a file name; default the kind.
+    pub name: String,
+    /// What.
+    pub what: What,
+    /// When.
+    pub when: When,
+    /// Whether steps are shortened to meet the times.
+    pub exact_times: bool,
+    /// Which fields (none for a ledger).
+    pub fields: Vec<Field>,
+}
+
+/// What is recorded.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum What {
+    /// Snapshots of grid and points, for export.
+    Fields,
+    /// Samples along a line: s_i = i L / (samples - 1).
+    Line {
+        /// First point, reference coordinates in m.
+        from: [f64; 2],
+        /// Last point.
+        to: [f64; 2],
+        /// Number of samples, at least 2.
+        samples: usize,
+    },
+    /// Energy and momentum.
+    Ledger,
+}
+
+/// When something is recorded.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum When {
+    /// At these times, rising, in s.
+    At(Vec<f64>),
+    /// Every so many seconds.
+    Every(f64),
+    /// Every so many steps.
+    EverySteps(usize),
+}
+
+impl Scene {
+    /// Reads a scene file and applies overrides `key.path=value`.
+    pub fn load(path: &Path, sets: &[String]) -> Result<Self> {
+        let whole = |what: String, remedy: &str| Error::at(Place::file(path), what, remedy);
+        let bytes = std::fs::read(path)
+            .map_err(|why| whole(format!("cannot read the scene: {why}"), "give the path of a scene file (.toml)"))?;
+        let text = String::from_utf8(bytes).map_err(|why| {
+            let good = why.utf8_error().valid_up_to();
+            let before = String::from_utf8_lossy(&why.as_bytes()[..good]).into_owned();
+            Origin::error_at_byte(path, &before, good, "this is not UTF-8 text".to_owned(), "save the scene as UTF-8")
+        })?;
+        Self::parse(&text, path, sets)
+    }
+
+    /// Reads the text of a scene; `path` stands in messages, and relative paths start from its folder.
+    pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Self> {
+        let original = document(text, path)?;
+        let mut origin =
+            Origin { path: path.to_owned(), text: text.to_owned(), run: text.to_owned(), sets: Vec::new() };
+        if !sets.is_empty() {
+            let mut changed: DocumentMut = original.into_mut();
+            for argument in sets {
+                origin.sets.push((sets::apply(&mut changed, argument)?, argument.clone()));
+            }
+            origin.run = changed.to_string();
+        }
+        let run = origin.run.clone();
+        let scene = read::scene(&document(&run, path)?, origin)?;
+        if let Mesh::Rectangle { .. } = scene.mesh {
+            let edges = ["left", "right", "bottom", "top"].map(str::to_owned);
+            scene.check_groups(&["body".to_owned()], &edges)?;
+        }
+        Ok(scene)
+    }
+
+    /// The text as run: the file after overrides, with its comments.
+    pub fn to_toml(&self) -> String {
+        self.origin.run.clone()
+    }
+
+    /// The scene file.
+    pub fn path(&self) -> &Path {
+        &self.origin.path
+    }
+
+    /// The name of the scene file without its ending.
+    pub fn name(&self) -> String {
+        self.origin.path.file_stem().map_or_else(|| "scene".to_owned(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// A path of the scene, which is relative to the scene file.
+    pub fn resolve(&self, path: &Path) -> PathBuf {
+        self.origin.path.parent().map_or_else(|| path.to_owned(), |folder| folder.join(path))
+    }
+
+    /// The mesh file, if the mesh is one.
+    pub fn mesh_path(&self) -> Option<PathBuf> {
+        match &self.mesh {
+            Mesh::File(path) => Some(self.resolve(path)),
+            Mesh::Rectangle { .. } => None,
+        }
+    }
+
+    /// The cloud file, if the cloud is one.
+    pub fn cloud_path(&self) -> Option<PathBuf> {
+        match &self.cloud.layout {
+            Layout::File(path) => Some(self.resolve(path)),
+            _ => None,
+        }
+    }
+
+    /// An error at the value of a key such as `scheme.cfl` or `boundary.0.group`, for checks that need
+    /// more than the scene.
+    pub fn error(&self, key: &str, what: impl Into<String>, remedy: impl Into<String>) -> Error {
+        let path: Vec<String> = key.split('.').map(str::to_owned).collect();
+        self.origin.error(&path, Part::Value, what, remedy)
+    }
+}
+
+/// Parses TOML; a syntax error has its place.
+fn document<'a>(text: &'a str, path: &Path) -> Result<Document<&'a str>> {
+    Document::parse(text).map_err(|why| {
+        let byte = why.span().map_or(0, |span| span.start);
+        let what = format!("this is not TOML: {}", why.message().replace('\n', ", "));
+        Origin::error_at_byte(
+            path,
+            text,
+            byte,
+            what,
+            "a scene has lines key = value under headers [table] and [[list]]",
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests;

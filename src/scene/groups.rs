@@ -1,0 +1,61 @@
+//! The groups that a scene names against those of the mesh.
+
+use super::Scene;
+use crate::error::Result;
+use crate::scene::suggest;
+
+impl Scene {
+    /// Checks that every group of the scene exists in the mesh, and that the mesh has no group of cells without
+    /// a material and no group of boundary edges without a condition.
+    pub fn check_groups(&self, cell_groups: &[String], edge_groups: &[String]) -> Result<()> {
+        let materials: Vec<Option<&str>> = self.materials.iter().map(|material| material.group.as_deref()).collect();
+        let sources = self.sources.iter().map(|source| source.group.as_deref());
+        let boundaries: Vec<Option<&str>> =
+            self.boundaries.iter().map(|boundary| Some(boundary.group.as_str())).collect();
+        self.check_exist("material", "cells", materials.iter().copied(), cell_groups)?;
+        self.check_exist("source", "cells", sources, cell_groups)?;
+        self.check_exist("boundary", "boundary edges", boundaries.iter().copied(), edge_groups)?;
+        if !materials.contains(&None) {
+            let remedy = "every cell needs a material: add one, or leave out `group` of the only one";
+            self.check_covered("material", &materials, cell_groups, remedy)?;
+        }
+        self.check_covered("boundary", &boundaries, edge_groups, "for a boundary without load say kind = \"free\"")
+    }
+
+    fn check_exist<'a>(
+        &self,
+        table: &str,
+        of: &str,
+        named: impl Iterator<Item = Option<&'a str>>,
+        existing: &[String],
+    ) -> Result<()> {
+        let known: Vec<&str> = existing.iter().map(String::as_str).collect();
+        for (i, group) in named.enumerate() {
+            let Some(group) = group.filter(|group| !known.contains(group)) else { continue };
+            let remedy = match known[..] {
+                [] => format!("the mesh has no named group of {of}: name one there (a physical group of Gmsh)"),
+                _ => format!("{}its groups of {of} are {}", suggest::did_you_mean(group, &known), known.join(", ")),
+            };
+            return Err(self.error(
+                &format!("{table}.{i}.group"),
+                format!("the mesh has no group \"{group}\""),
+                remedy,
+            ));
+        }
+        Ok(())
+    }
+
+    fn check_covered(&self, table: &str, named: &[Option<&str>], existing: &[String], remedy: &str) -> Result<()> {
+        let bare: Vec<&str> =
+            existing.iter().map(String::as_str).filter(|group| !named.contains(&Some(group))).collect();
+        match bare[..] {
+            [] => Ok(()),
+            [one] => Err(self.error(table, format!("the group {one} of the mesh has no [[{table}]]"), remedy)),
+            _ => Err(self.error(
+                table,
+                format!("the groups {} of the mesh have no [[{table}]]", bare.join(", ")),
+                remedy,
+            )),
+        }
+    }
+}

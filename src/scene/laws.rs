@@ -1,0 +1,36 @@
+//! The laws that scenes can name, with their parameters: what a `[[material]]` is checked against.
+
+use super::reader::{Check, POSITIVE};
+
+/// A law and its parameters, all required.
+#[derive(Debug)]
+pub struct Law {
+    /// Its name in scenes.
+    pub name: &'static str,
+    /// Its parameters.
+    pub parameters: &'static [Parameter],
+}
+
+/// A parameter of a law.
+#[derive(Debug)]
+pub struct Parameter {
+    /// Its key in scenes.
+    pub name: &'static str,
+    /// Its unit, empty for a pure number.
+    pub unit: &'static str,
+    /// What values it takes.
+    pub(super) check: Check,
+}
+
+/// Every law.
+pub const LAWS: &[Law] = &[Law {
+    name: "neo-hookean",
+    parameters: &[
+        Parameter { name: "young", unit: "Pa", check: POSITIVE },
+        Parameter {
+            name: "poisson",
+            unit: "",
+            check: Check { range: "greater than -1 and less than 0.5", holds: |nu| nu > -1.0 && nu < 0.5 },
+        },
+    ],
+}];

@@ -1,0 +1,342 @@
+//! A document to a [`Scene`]: the keys of each table, with their ranges and defaults.
+
+use std::path::PathBuf;
+
+use toml_edit::Document;
+
+use super::origin::Origin;
+use super::reader::{Check, POSITIVE, Reader};
+use super::{
+    Boundary, Cloud, Condition, Curl, Expression, Flux, Initial, LAWS, Layout, Material, Mesh, Method, Scene, Scheme,
+    Source, Step, Sweeps,
+};
+use crate::error::Result;
+
+/// Reads a whole scene.
+pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> {
+    let mut root = Reader::new(document.as_table(), Vec::new(), &origin, "the scene".to_owned());
+    root.later(&["limiter", "regrid", "exact", "checkpoint"]);
+    let title = root.text("title")?;
+    let mut mesh_table = root.table("mesh")?;
+    let mut cloud_table = root.table("cloud")?;
+    let mut material_tables = root.tables("material")?;
+    let mut initial_table = root.table("initial")?;
+    let boundary_tables = root.tables("boundary")?;
+    let source_tables = root.tables("source")?;
+    let mut curl_table = root.table("curl")?;
+    let mut scheme_table = root.table("scheme")?;
+    let mut time_table = root.table("time")?;
+    let output_tables = root.tables("output")?;
+    root.finish()?;
+
+    let need = |key: &'static str, remedy: &str| root.missing(key, remedy);
+    let mesh = mesh(mesh_table.as_mut().ok_or_else(|| need("mesh", "add [mesh] with file = \"name.msh\""))?)?;
+    let scheme = scheme(scheme_table.as_mut().ok_or_else(|| need("scheme", "add [scheme] with method and degree"))?)?;
+    let cloud = cloud(cloud_table.as_mut(), scheme.degree)?;
+    if material_tables.is_empty() {
+        return Err(need("material", "add [[material]] with law, density and the law's parameters"));
+    }
+    let materials = materials(&mut material_tables, &cloud)?;
+    let end = end(time_table.as_mut().ok_or_else(|| need("time", "add [time] with end, in s"))?)?;
+    let scene = Scene {
+        title: title.unwrap_or_else(|| origin.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),
+        mesh,
+        cloud,
+        materials,
+        initial: initial(initial_table.as_mut())?,
+        boundaries: boundaries(boundary_tables)?,
+        sources: source_tables.into_iter().map(source).collect::<Result<_>>()?,
+        curl: curl(curl_table.as_mut(), scheme.degree)?,
+        scheme,
+        end,
+        outputs: super::outputs::outputs(output_tables, end)?,
+        origin: Origin::default(),
+    };
+    Ok(Scene { origin, ..scene })
+}
+
+fn mesh(table: &mut Reader) -> Result<Mesh> {
+    let file = table.text("file")?;
+    let rectangle = table.table("rectangle")?;
+    table.finish()?;
+    match (file, rectangle) {
+        (Some(file), None) => Ok(Mesh::File(PathBuf::from(file))),
+        (None, Some(mut rectangle)) => {
+            let size = rectangle.array("size", POSITIVE)?;
+            let cells = rectangle.array("cells", CELLS)?;
+            rectangle.finish()?;
+            let size = size.ok_or_else(|| rectangle.missing("size", "for instance size = [3.0, 3.0], in m"))?;
+            let cells = cells.ok_or_else(|| rectangle.missing("cells", "for instance cells = [30, 30]"))?;
+            Ok(Mesh::Rectangle { size, cells: cells.map(|n: f64| n as usize) })
+        }
+        (Some(_), Some(_)) => {
+            Err(table.wrong("rectangle", "[mesh] has both `file` and `rectangle`", "keep one of them"))
+        }
+        (None, None) => Err(table.missing("file", "or rectangle = { size = [3.0, 3.0], cells = [30, 30] }")),
+    }
+}
+
+const CELLS: Check =
+    Check { range: "whole, from 1 to 100000", holds: |n| n.fract() == 0.0 && (1.0..=100_000.0).contains(&n) };
+
+fn scheme(table: &mut Reader) -> Result<Scheme> {
+    table.later(&["impedance"]);
+    let method = table.choice("method", Method::NAMES, &[])?;
+    let degree = table.integer("degree", 0..=6)?;
+    let time_degree = table.integer("time_degree", 0..=6)?;
+    let flux = table.choice("flux", Flux::NAMES, &[])?.unwrap_or(Flux::Rusanov);
+    let cfl = table.number("cfl", POSITIVE)?;
+    let safety = table.number("safety", POSITIVE)?;
+    let sweeps = table.choice("sweeps", Sweeps::NAMES, &["ladder"])?.unwrap_or(Sweeps::Paper);
+    table.finish()?;
+    let names = "\"ader-dgmpm\", \"ader-dgfem\" or \"rk-dgfem\"";
+    let method = method.ok_or_else(|| table.missing("method", &format!("choose {names}")))?;
+    let degree = degree.ok_or_else(|| table.missing("degree", "the degree N of the cells, 0 to 6"))?;
+    let step = match (cfl, safety) {
+        (Some(cfl), None) => Step::Cfl(cfl),
+        (None, safety) => Step::Safety(safety.unwrap_or(0.9)),
+        (Some(_), Some(_)) => {
+            let remedy = "cfl is the paper's dt = cfl h / ((2N+1) c), safety a share of the measured limit: keep one";
+            return Err(table.wrong("safety", "[scheme] has both `cfl` and `safety`", remedy));
+        }
+    };
+    Ok(Scheme { method, degree, time_degree: time_degree.unwrap_or(degree), flux, step, sweeps })
+}
+
+#[derive(Clone, Copy)]
+enum Pattern {
+    Paper,
+    Midpoints,
+    Gauss,
+    Jitter,
+    File,
+}
+
+const PATTERNS: [(&str, Pattern); 5] = [
+    ("paper", Pattern::Paper),
+    ("midpoints", Pattern::Midpoints),
+    ("gauss", Pattern::Gauss),
+    ("jitter", Pattern::Jitter),
+    ("file", Pattern::File),
+];
+
+const AMOUNT: Check = Check { range: "from 0 to 0.5 (of the spacing)", holds: |a| (0.0..=0.5).contains(&a) };
+
+fn cloud(table: Option<&mut Reader>, degree: usize) -> Result<Cloud> {
+    let layout = if degree <= 2 { Layout::Paper } else { Layout::Midpoints };
+    let default = Cloud { layout, per_direction: degree + 1 };
+    let Some(table) = table else { return Ok(default) };
+    let pattern = table.choice("layout", &PATTERNS, &[])?;
+    let path = match pattern {
+        Some(Pattern::File) => {
+            let path = table.text("path")?;
+            Some(path.ok_or_else(|| table.missing("path", "the file of the points, for instance \"cloud.vtu\""))?)
+        }
+        _ => None,
+    };
+    let cloud = points(table, pattern, path, default)?;
+    table.finish()?;
+    Ok(cloud)
+}
+
+/// The keys that [cloud] and [[material]] share.
+fn points(table: &mut Reader, pattern: Option<Pattern>, path: Option<String>, default: Cloud) -> Result<Cloud> {
+    if let Some(path) = path {
+        return Ok(Cloud { layout: Layout::File(PathBuf::from(path)), ..default });
+    }
+    let per_direction = table.integer("per_direction", 1..=30)?.unwrap_or(default.per_direction);
+    let layout = match pattern {
+        None | Some(Pattern::File) => default.layout,
+        Some(Pattern::Paper) => Layout::Paper,
+        Some(Pattern::Midpoints) => Layout::Midpoints,
+        Some(Pattern::Gauss) => Layout::Gauss,
+        Some(Pattern::Jitter) => Layout::Jitter {
+            seed: table.integer("seed", 0..=usize::MAX)?.unwrap_or(1) as u64,
+            amount: table.number("amount", AMOUNT)?.unwrap_or(0.25),
+        },
+    };
+    Ok(Cloud { layout, per_direction })
+}
+
+fn materials(tables: &mut [Reader], cloud: &Cloud) -> Result<Vec<Material>> {
+    let several = tables.len() > 1;
+    let mut materials: Vec<Material> = Vec::with_capacity(tables.len());
+    for table in tables {
+        let material = material(table, cloud)?;
+        if several && material.group.is_none() {
+            return Err(table.missing("group", "with several materials each names its group of cells"));
+        }
+        if materials.iter().any(|other| other.group == material.group) {
+            let group = material.group.unwrap_or_default();
+            let remedy = "a group of cells has one material: remove one, or give it another group";
+            return Err(table.wrong("group", format!("two [[material]] on the group \"{group}\""), remedy));
+        }
+        materials.push(material);
+    }
+    Ok(materials)
+}
+
+fn material(table: &mut Reader, cloud: &Cloud) -> Result<Material> {
+    let group = table.text("group")?;
+    let laws: Vec<(&str, usize)> = LAWS.iter().enumerate().map(|(i, law)| (law.name, i)).collect();
+    let names: Vec<String> = laws.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+    let law = table.choice("law", &laws, &[])?;
+    let law = law.ok_or_else(|| table.missing("law", &format!("there are {}", names.join(", "))))?;
+    let law = &LAWS[law];
+    let density = table.number("density", POSITIVE)?;
+    let mut given = Vec::new();
+    for parameter in law.parameters {
+        given.push((parameter, table.number(parameter.name, parameter.check)?));
+    }
+    let pattern = table.choice("layout", &PATTERNS[..4], &[])?;
+    if matches!(cloud.layout, Layout::File(_)) && (pattern.is_some() || table.has("per_direction")) {
+        let key = if pattern.is_some() { "layout" } else { "per_direction" };
+        return Err(table.wrong(
+            key,
+            "the points come from the file of [cloud]",
+            "remove this key, or change [cloud] layout",
+        ));
+    }
+    let cloud = points(table, pattern, None, cloud.clone())?;
+    table.finish()?;
+    let density = density.ok_or_else(|| table.missing("density", "the density at t = 0, in kg/m^3"))?;
+    let mut parameters = std::collections::BTreeMap::new();
+    for (parameter, value) in given {
+        let remedy = format!("law \"{}\": {}, {} {}", law.name, parameter.name, parameter.check.range, parameter.unit);
+        let value = value.ok_or_else(|| table.missing(parameter.name, remedy.trim_end()))?;
+        parameters.insert(parameter.name.to_owned(), value);
+    }
+    Ok(Material { group, law: law.name.to_owned(), density, parameters, cloud })
+}
+
+fn initial(table: Option<&mut Reader>) -> Result<Initial> {
+    let number = Expression::number;
+    let mut initial = Initial {
+        velocity: [number(0.0), number(0.0)],
+        deformation: [number(1.0), number(0.0), number(0.0), number(1.0)],
+    };
+    let Some(table) = table else { return Ok(initial) };
+    if let Some(velocity) = table.expressions("velocity")? {
+        at_start(table, "velocity", &velocity)?;
+        initial.velocity = velocity;
+    }
+    if let Some(deformation) = table.expressions("deformation")? {
+        at_start(table, "deformation", &deformation)?;
+        if let [Some(f11), Some(f12), Some(f21), Some(f22)] = deformation.each_ref().map(Expression::constant)
+            && f11 * f22 <= f12 * f21
+        {
+            let what = format!("`deformation` has the determinant J = {}", f11 * f22 - f12 * f21);
+            return Err(table.wrong("deformation", what, "J must be greater than 0; the order is F11, F12, F21, F22"));
+        }
+        initial.deformation = deformation;
+    }
+    table.finish()?;
+    Ok(initial)
+}
+
+/// Initial values are values at t = 0.
+fn at_start(table: &Reader, key: &str, expressions: &[Expression]) -> Result<()> {
+    match expressions.iter().position(Expression::depends_on_time) {
+        Some(i) => {
+            Err(table.wrong_entry(key, i, format!("`{key}` depends on t"), "initial values depend on x and y only"))
+        }
+        None => Ok(()),
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Wall,
+    Symmetry,
+    Free,
+    Clamped,
+    Velocity,
+    Traction,
+    Absorbing,
+}
+
+const KINDS: [(&str, Kind); 7] = [
+    ("wall", Kind::Wall),
+    ("symmetry", Kind::Symmetry),
+    ("free", Kind::Free),
+    ("clamped", Kind::Clamped),
+    ("velocity", Kind::Velocity),
+    ("traction", Kind::Traction),
+    ("absorbing", Kind::Absorbing),
+];
+
+fn boundaries(tables: Vec<Reader>) -> Result<Vec<Boundary>> {
+    let mut boundaries: Vec<Boundary> = Vec::with_capacity(tables.len());
+    for mut table in tables {
+        let boundary = boundary(&mut table)?;
+        if boundaries.iter().any(|other| other.group == boundary.group) {
+            let what = format!("two [[boundary]] on the group \"{}\"", boundary.group);
+            return Err(table.wrong("group", what, "a group of edges has one condition: remove one"));
+        }
+        boundaries.push(boundary);
+    }
+    Ok(boundaries)
+}
+
+fn boundary(table: &mut Reader) -> Result<Boundary> {
+    table.later(&["gap", "friction", "partner"]);
+    let group = table.text("group")?;
+    let kind = table.choice("kind", &KINDS, &["unilateral", "periodic", "contact"])?;
+    let names: Vec<&str> = KINDS.iter().map(|(name, _)| *name).collect();
+    let kind = kind.ok_or_else(|| table.missing("kind", &format!("one of {}", names.join(", "))))?;
+    let value = |table: &mut Reader, unit: &str| {
+        let value = table.expressions("value")?;
+        value.ok_or_else(|| table.missing("value", &format!("two expressions of x, y, t, in {unit}")))
+    };
+    let condition = match kind {
+        Kind::Wall => Condition::Wall { speed: table.expression("speed")?.unwrap_or_else(|| Expression::number(0.0)) },
+        Kind::Symmetry => Condition::Symmetry,
+        Kind::Free => Condition::Free,
+        Kind::Clamped => Condition::Clamped,
+        Kind::Velocity => Condition::Velocity(value(table, "m/s")?),
+        Kind::Traction => Condition::Traction(value(table, "Pa")?),
+        Kind::Absorbing => Condition::Absorbing,
+    };
+    table.of_kind(names[kind as usize]);
+    table.finish()?;
+    let group = group.ok_or_else(|| table.missing("group", "the group of edges in the mesh, for instance \"left\""))?;
+    Ok(Boundary { group, condition })
+}
+
+fn source(mut table: Reader) -> Result<Source> {
+    let group = table.text("group")?;
+    let gravity = table.choice("kind", &[("body-force", false), ("gravity", true)], &[])?;
+    let gravity = gravity.ok_or_else(|| table.missing("kind", "\"body-force\" or \"gravity\""))?;
+    let value = table.expressions("value")?;
+    table.finish()?;
+    let value = value.ok_or_else(|| table.missing("value", "two components per unit mass, in m/s^2"))?;
+    if let (true, Some(i)) = (gravity, value.iter().position(|v| v.constant().is_none())) {
+        let what = "gravity depends on x, y or t".to_owned();
+        return Err(table.wrong_entry(
+            "value",
+            i,
+            what,
+            "gravity is constant; kind = \"body-force\" takes expressions",
+        ));
+    }
+    Ok(Source { group, value })
+}
+
+fn curl(table: Option<&mut Reader>, degree: usize) -> Result<Curl> {
+    let default = Curl::Lcf { alpha: if degree >= 4 { 6.0 } else { 3.0 } };
+    let Some(table) = table else { return Ok(default) };
+    let lcf = table.choice("control", &[("lcf", true), ("off", false)], &["auto"])?.unwrap_or(true);
+    let curl = match lcf {
+        true => table.number("alpha", POSITIVE)?.map_or(default, |alpha| Curl::Lcf { alpha }),
+        false => Curl::Off,
+    };
+    table.of_kind(if lcf { "lcf" } else { "off" });
+    table.finish()?;
+    Ok(curl)
+}
+
+fn end(table: &mut Reader) -> Result<f64> {
+    let end = table.number("end", POSITIVE)?;
+    table.finish()?;
+    end.ok_or_else(|| table.missing("end", "the end time, in s"))
+}

@@ -1,0 +1,321 @@
+//! Reads one table of a scene key by key: each getter checks type and range, [`Reader::finish`] refuses
+//! the keys that nobody asked for, and every message has its place.
+
+use std::ops::RangeInclusive;
+
+use toml_edit::{Item, TableLike, Value};
+
+use super::expression::Expression;
+use super::origin::{Origin, Part};
+use super::suggest;
+use crate::error::{Error, Result};
+
+/// What values a number may take.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Check {
+    /// In words that complete "must be".
+    pub(super) range: &'static str,
+    /// The rule; it never sees NaN or infinity.
+    pub(super) holds: fn(f64) -> bool,
+}
+
+/// Any finite number.
+pub(super) const FINITE: Check = Check { range: "finite", holds: |_| true };
+/// A number above 0.
+pub(super) const POSITIVE: Check = Check { range: "greater than 0", holds: |value| value > 0.0 };
+
+/// A table that is being read.
+pub(super) struct Reader<'a> {
+    table: &'a dyn TableLike,
+    path: Vec<String>,
+    origin: &'a Origin,
+    /// How messages name the table, for instance "[scheme]".
+    title: String,
+    known: Vec<&'static str>,
+    later: &'static [&'static str],
+}
+
+impl<'a> Reader<'a> {
+    /// A table of the scene, with its key path.
+    pub(super) fn new(table: &'a dyn TableLike, path: Vec<String>, origin: &'a Origin, title: String) -> Self {
+        Self { table, path, origin, title, known: Vec::new(), later: &[] }
+    }
+
+    /// Keys that the design knows and that are not built yet.
+    pub(super) fn later(&mut self, keys: &'static [&'static str]) {
+        self.later = keys;
+    }
+
+    /// Adds the kind to the title, for messages.
+    pub(super) fn of_kind(&mut self, kind: &str) {
+        self.title = format!("{} of kind \"{kind}\"", self.title);
+    }
+
+    /// An error at the value of a key.
+    pub(super) fn wrong(&self, key: &str, what: impl Into<String>, remedy: impl Into<String>) -> Error {
+        self.origin.error(&self.below(&[key]), Part::Value, what, remedy)
+    }
+
+    /// An error at an entry of a list.
+    pub(super) fn wrong_entry(
+        &self,
+        key: &str,
+        index: usize,
+        what: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Error {
+        self.origin.error(&self.below(&[key, &index.to_string()]), Part::Value, what, remedy)
+    }
+
+    /// The error of a required key that is not there.
+    pub(super) fn missing(&self, key: &str, remedy: &str) -> Error {
+        let given: Vec<&str> = self.table.iter().map(|(key, _)| key).filter(|key| !self.known.contains(key)).collect();
+        if let Some(misspelt) = suggest::nearest(key, &given) {
+            let what = format!("unknown key `{misspelt}` in {}", self.title);
+            let remedy = format!("did you mean `{key}`? {} needs it: {remedy}", self.title);
+            return self.origin.error(&self.below(&[misspelt]), Part::Key, what, remedy);
+        }
+        self.origin.error(&self.path, Part::Value, format!("{} needs the key `{key}`", self.title), remedy)
+    }
+
+    /// Refuses keys that were not read.
+    pub(super) fn finish(&self) -> Result<()> {
+        match self.table.iter().find(|(key, _)| !self.known.contains(key)) {
+            Some((key, _)) => Err(self.unknown(key)),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether the key is there.
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
+    /// A text.
+    pub(super) fn text(&mut self, key: &'static str) -> Result<Option<String>> {
+        let Some(item) = self.item(key) else { return Ok(None) };
+        match item.as_str() {
+            Some(text) if !text.trim().is_empty() => Ok(Some(text.to_owned())),
+            _ => Err(self.not(key, "a text that is not empty, in quotes", item)),
+        }
+    }
+
+    /// true or false.
+    pub(super) fn boolean(&mut self, key: &'static str) -> Result<Option<bool>> {
+        let Some(item) = self.item(key) else { return Ok(None) };
+        item.as_bool().map(Some).ok_or_else(|| self.not(key, "true or false", item))
+    }
+
+    /// A finite number in a range.
+    pub(super) fn number(&mut self, key: &'static str, check: Check) -> Result<Option<f64>> {
+        let Some(item) = self.item(key) else { return Ok(None) };
+        let number = item.as_value().and_then(number_of);
+        number
+            .filter(|n| (check.holds)(*n))
+            .map(Some)
+            .ok_or_else(|| self.not(key, &format!("a number, {}", check.range), item))
+    }
+
+    /// A whole number in a range.
+    pub(super) fn integer(&mut self, key: &'static str, range: RangeInclusive<usize>) -> Result<Option<usize>> {
+        let Some(item) = self.item(key) else { return Ok(None) };
+        let number = item.as_integer().and_then(|n| usize::try_from(n).ok());
+        let want = match *range.end() {
+            usize::MAX => format!("a whole number, at least {}", range.start()),
+            end => format!("a whole number from {} to {end}", range.start()),
+        };
+        number.filter(|n| range.contains(n)).map(Some).ok_or_else(|| self.not(key, &want, item))
+    }
+
+    /// A list of finite numbers in a range.
+    pub(super) fn numbers(&mut self, key: &'static str, check: Check) -> Result<Option<Vec<f64>>> {
+        let Some(item) = self.item(key) else { return Ok(None) };
+        let want = "a list of numbers, as in [1.0, 2.0]";
+        let list = item.as_array().filter(|list| !list.is_empty()).ok_or_else(|| self.not(key, want, item))?;
+        let mut numbers = Vec::with_capacity(list.len());
+        for (i, value) in list.iter().enumerate() {
+            let number = number_of(value).filter(|n| (check.holds)(*n));
+            numbers.push(number.ok_or_else(|| self.not_entry(key, i, &format!("a number, {}", check.range), value))?);
+        }
+        Ok(Some(numbers))
+    }
+
+    /// A list of N numbers.
+    pub(super) fn array<const N: usize>(&mut self, key: &'static str, check: Check) -> Result<Option<[f64; N]>> {
+        let Some(numbers) = self.numbers(key, check)? else { return Ok(None) };
+        let count = numbers.len();
+        numbers.try_into().map(Some).map_err(|_| self.count(key, N, count))
+    }
+
+    /// An expression of x, y, t: a text or a number.
+    pub(super) fn expression(&mut self, key: &'static str) -> Result<Option<Expression>> {
+        let Some(item) = self.item(key) else { return Ok(None) };
+        let value = item.as_value().ok_or_else(|| self.not(key, EXPRESSION, item))?;
+        self.compile(&[key], value).map(Some)
+    }
+
+    /// A list of N expressions of x, y, t.
+    pub(super) fn expressions<const N: usize>(&mut self, key: &'static str) -> Result<Option<[Expression; N]>> {
+        let Some(item) = self.item(key) else { return Ok(None) };
+        let list = item.as_array().ok_or_else(|| self.not(key, &format!("a list of {N} expressions"), item))?;
+        if list.len() != N {
+            return Err(self.count(key, N, list.len()));
+        }
+        let mut compiled = Vec::with_capacity(N);
+        for (i, value) in list.iter().enumerate() {
+            compiled.push(self.compile(&[key, &i.to_string()], value)?);
+        }
+        compiled.try_into().map(Some).map_err(|_| self.count(key, N, list.len()))
+    }
+
+    /// One of some names; the names of `later` are known but not built yet.
+    pub(super) fn choice<T: Copy>(
+        &mut self,
+        key: &'static str,
+        names: &[(&str, T)],
+        later: &[&str],
+    ) -> Result<Option<T>> {
+        let Some(item) = self.item(key) else { return Ok(None) };
+        let Some(text) = item.as_str() else { return Err(self.not(key, &format!("one of {}", quoted(names)), item)) };
+        self.pick(&[key], text, names, later).map(Some)
+    }
+
+    /// A list of names.
+    pub(super) fn choices<T: Copy>(&mut self, key: &'static str, names: &[(&str, T)]) -> Result<Option<Vec<T>>> {
+        let Some(item) = self.item(key) else { return Ok(None) };
+        let want = format!("a list of names out of {}", quoted(names));
+        let list = item.as_array().filter(|list| !list.is_empty()).ok_or_else(|| self.not(key, &want, item))?;
+        let mut found = Vec::with_capacity(list.len());
+        for (i, value) in list.iter().enumerate() {
+            let text = value.as_str().ok_or_else(|| self.not_entry(key, i, "a name", value))?;
+            found.push(self.pick(&[key, &i.to_string()], text, names, &[])?);
+        }
+        Ok(Some(found))
+    }
+
+    /// The table under a key.
+    pub(super) fn table(&mut self, key: &'static str) -> Result<Option<Reader<'a>>> {
+        let Some(item) = self.item(key) else { return Ok(None) };
+        let table = item.as_table_like().ok_or_else(|| self.not(key, &format!("a table [{key}]"), item))?;
+        Ok(Some(Reader::new(table, self.below(&[key]), self.origin, format!("[{}]", self.below(&[key]).join(".")))))
+    }
+
+    /// The tables of a list of tables; none where the key is not there.
+    pub(super) fn tables(&mut self, key: &'static str) -> Result<Vec<Reader<'a>>> {
+        let Some(item) = self.item(key) else { return Ok(Vec::new()) };
+        let count = item.as_array_of_tables().map(|list| list.len()).or(item.as_array().map(|list| list.len()));
+        let Some(count) = count else {
+            return Err(self.not(key, &format!("a list of tables, each under [[{key}]] in double brackets"), item));
+        };
+        let mut tables = Vec::with_capacity(count);
+        for (i, entry) in (0..count).filter_map(|i| Some((i.to_string(), item.get(i)?))) {
+            let path = self.below(&[key, &i]);
+            let what = || format!("entry {i} of `{key}` must be a table, not {}", describe(entry.as_value()));
+            let table = entry.as_table_like().ok_or_else(|| {
+                self.origin.error(&path, Part::Value, what(), format!("write [[{key}]] and its keys"))
+            })?;
+            tables.push(Reader::new(table, path, self.origin, format!("[[{key}]]")));
+        }
+        Ok(tables)
+    }
+
+    /// The value of a key, which is known from now on.
+    fn item(&mut self, key: &'static str) -> Option<&'a Item> {
+        self.known.push(key);
+        self.table.get(key)
+    }
+
+    fn below(&self, keys: &[&str]) -> Vec<String> {
+        self.path.iter().cloned().chain(keys.iter().map(|key| (*key).to_owned())).collect()
+    }
+
+    fn pick<T: Copy>(&self, keys: &[&str], text: &str, names: &[(&str, T)], later: &[&str]) -> Result<T> {
+        if let Some((_, value)) = names.iter().find(|(name, _)| *name == text) {
+            return Ok(*value);
+        }
+        let path = self.below(keys);
+        let list = quoted(names);
+        if later.contains(&text) {
+            let what = format!("`{}` = \"{text}\" is not built yet", keys[0]);
+            return Err(self.origin.error(&path, Part::Value, what, format!("built are {list}")));
+        }
+        let known: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
+        let remedy = format!("{}there are {list}", suggest::did_you_mean(text, &known));
+        Err(self.origin.error(&path, Part::Value, format!("unknown `{}` \"{}\"", keys[0], short(text)), remedy))
+    }
+
+    fn compile(&self, keys: &[&str], value: &Value) -> Result<Expression> {
+        let path = self.below(keys);
+        if let Some(number) = number_of(value) {
+            return Ok(Expression::number(number));
+        }
+        let Some(text) = value.as_str() else {
+            let what = format!("`{}` must be {EXPRESSION}, not {}", keys[0], describe(Some(value)));
+            return Err(self.origin.error(&path, Part::Value, what, "for instance \"sin(pi*x)\" or 2.5"));
+        };
+        Expression::compile(text).map_err(|fault| {
+            self.origin.error(&path, Part::Inside(fault.offset), format!("`{}`: {}", keys[0], fault.what), fault.remedy)
+        })
+    }
+
+    fn unknown(&self, key: &str) -> Error {
+        let path = self.below(&[key]);
+        let known = self.known.join(", ");
+        if self.later.contains(&key) {
+            let what = format!("`{key}` is not built yet");
+            return self.origin.error(&path, Part::Key, what, format!("{} knows {known}", self.title));
+        }
+        let what = format!("unknown key `{}` in {}", short(key), self.title);
+        let remedy = format!("{}{} knows {known}", suggest::did_you_mean(key, &self.known), self.title);
+        self.origin.error(&path, Part::Key, what, remedy)
+    }
+
+    fn count(&self, key: &str, want: usize, given: usize) -> Error {
+        self.wrong(
+            key,
+            format!("`{key}` must have {want} entries, not {given}"),
+            "components are in the order 1, 2 or 11, 12, 21, 22",
+        )
+    }
+
+    fn not(&self, key: &str, want: &str, item: &Item) -> Error {
+        self.wrong(key, format!("`{key}` is {}", describe(item.as_value())), format!("it must be {want}"))
+    }
+
+    fn not_entry(&self, key: &str, index: usize, want: &str, value: &Value) -> Error {
+        let what = format!("entry {index} of `{key}` is {}", describe(Some(value)));
+        self.wrong_entry(key, index, what, format!("it must be {want}"))
+    }
+}
+
+const EXPRESSION: &str = "an expression of x, y, t in quotes, or a number";
+
+/// The finite number that a value is.
+fn number_of(value: &Value) -> Option<f64> {
+    let number = value.as_float().or_else(|| value.as_integer().map(|n| n as f64));
+    number.filter(|n| n.is_finite())
+}
+
+fn quoted<T>(names: &[(&str, T)]) -> String {
+    names.iter().map(|(name, _)| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
+}
+
+/// A value in words; `None` is a table.
+fn describe(value: Option<&Value>) -> String {
+    match value {
+        Some(Value::String(text)) => format!("the text \"{}\"", short(text.value())),
+        Some(Value::Integer(n)) => n.value().to_string(),
+        Some(Value::Float(x)) => x.value().to_string(),
+        Some(Value::Boolean(b)) => b.value().to_string(),
+        Some(Value::Datetime(_)) => "a date".to_owned(),
+        Some(Value::Array(list)) => format!("a list of {}", list.len()),
+        Some(Value::InlineTable(_)) | None => "a table".to_owned(),
+    }
+}
+
+/// At most 40 characters of a text.
+fn short(text: &str) -> String {
+    let line = text.lines().next().unwrap_or_default();
+    let cut: String = line.chars().take(40).collect();
+    if cut == text { cut } else { format!("{cut}...") }
+}

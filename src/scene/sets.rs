@@ -1,0 +1,129 @@
+//! Overrides of the command line, `--set key.path=value`, on the text of a scene.
+
+use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, Value};
+
+use crate::error::{Error, Place, Result};
+
+/// Keys of which a table has at most one: setting one removes the others.
+const EXCLUSIVE: &[(&str, &[&str])] =
+    &[("scheme", &["cfl", "safety"]), ("mesh", &["file", "rectangle"]), ("output", &["at", "every", "every_steps"])];
+
+/// Applies `key.path=value` to a document; answers the path.
+pub(super) fn apply(document: &mut DocumentMut, argument: &str) -> Result<Vec<String>> {
+    let wrong = |what: String, remedy: &str| Error::at(place(argument), what, remedy);
+    let form = "write --set key.path=value, as in scheme.degree=3 or boundary.0.kind=free";
+    let (left, right) = argument.split_once('=').ok_or_else(|| wrong("there is no `=`".to_owned(), form))?;
+    let keys = Key::parse(left.trim()).map_err(|_| wrong(format!("`{left}` is not a key path"), form))?;
+    let path: Vec<String> = keys.iter().map(|key| key.get().to_owned()).collect();
+    let Some((last, parents)) = path.split_last() else { return Err(wrong("the key path is empty".to_owned(), form)) };
+    let mut item = document.as_item_mut();
+    remove_rivals(item, &path);
+    for (depth, key) in parents.iter().enumerate() {
+        let next_is_index = path[depth + 1].parse::<usize>().is_ok();
+        let no_place = missing(item, &path, depth, argument);
+        item = enter(item, key, next_is_index).ok_or(no_place)?;
+    }
+    let value = parse_value(right);
+    let value =
+        value.ok_or_else(|| wrong(format!("`{right}` is not a TOML value"), "check its quotes and brackets"))?;
+    if !put(item, last, value) {
+        return Err(missing(item, &path, parents.len(), argument));
+    }
+    Ok(path)
+}
+
+/// The place of errors that an override causes.
+fn place(argument: &str) -> Place {
+    Place::file(std::path::Path::new(&format!("--set {argument}")))
+}
+
+/// TOML, or a bare text where it is none.
+fn parse_value(text: &str) -> Option<Value> {
+    let text = text.trim();
+    match text.parse::<Value>() {
+        Ok(value) => Some(value.decorated("", "")),
+        Err(_) if text.starts_with(['"', '\'', '[', '{']) => None,
+        Err(_) => Some(Value::from(text)),
+    }
+}
+
+/// The entry `key` of a table or list, made where it is missing (a list grows by one entry at its end).
+fn enter<'a>(item: &'a mut Item, key: &str, is_list: bool) -> Option<&'a mut Item> {
+    if let Some(tables) = item.as_array_of_tables_mut() {
+        let index: usize = key.parse().ok()?;
+        if index == tables.len() {
+            tables.push(Table::new());
+        }
+    } else if let Some(table) = item.as_table_mut() {
+        if !table.contains_key(key) {
+            let new = if is_list { Item::ArrayOfTables(Default::default()) } else { Item::Table(Table::new()) };
+            table.insert(key, new);
+        }
+    } else if let Some(table) = item.as_inline_table_mut()
+        && !table.contains_key(key)
+        && !is_list
+    {
+        table.insert(key, Value::InlineTable(InlineTable::new()));
+    }
+    match item.is_table_like() {
+        true => item.get_mut(key),
+        false => item.get_mut(key.parse::<usize>().ok()?),
+    }
+}
+
+/// Gives `key` of a table or list a value, keeping the comments around the old one; false where there is no such place.
+fn put(item: &mut Item, key: &str, mut value: Value) -> bool {
+    if let Some(table) = item.as_table_like_mut() {
+        if let Some(old) = table.get(key).and_then(Item::as_value) {
+            *value.decor_mut() = old.decor().clone();
+        } else {
+            table.remove(key);
+        }
+        table.insert(key, Item::Value(value));
+        return true;
+    }
+    let (Some(list), Ok(index)) = (item.as_array_mut(), key.parse::<usize>()) else { return false };
+    match index {
+        _ if index < list.len() => {
+            list.replace(index, value);
+        }
+        _ if index == list.len() => list.push(value),
+        _ => return false,
+    }
+    true
+}
+
+fn remove_rivals(root: &mut Item, path: &[String]) {
+    let Some((section, rivals)) = EXCLUSIVE.iter().find(|(section, _)| path.first().is_some_and(|key| key == section))
+    else {
+        return;
+    };
+    let depth = if *section == "output" { 2 } else { 1 };
+    let Some(key) = path.get(depth).filter(|key| rivals.contains(&key.as_str())) else { return };
+    let mut table = root.get_mut(*section);
+    if depth == 2 {
+        table = table.and_then(|list| list.get_mut(path[1].parse::<usize>().ok()?));
+    }
+    if let Some(table) = table.and_then(Item::as_table_like_mut) {
+        for rival in rivals.iter().filter(|rival| *rival != key) {
+            table.remove(rival);
+        }
+    }
+}
+
+/// The error of a path whose key `depth` has no place in `item`.
+fn missing(item: &Item, path: &[String], depth: usize, argument: &str) -> Error {
+    let above = path[..depth].join(".");
+    let what = format!("`{}` has no place in the scene", path[..=depth].join("."));
+    let entries = item.as_array_of_tables().map(|list| list.len()).or(item.as_array().map(|list| list.len()));
+    let remedy = match (item.as_table_like(), entries) {
+        (Some(table), _) => {
+            let keys: Vec<&str> = table.iter().map(|(key, _)| key).collect();
+            format!("`{above}` has the keys {}", keys.join(", "))
+        }
+        (None, Some(0)) => format!("`{above}` is an empty list: start with 0"),
+        (None, Some(n)) => format!("`{above}` is a list: its entries are 0 to {}, and {n} appends one", n - 1),
+        (None, None) => format!("`{above}` is a value, without keys below it"),
+    };
+    Error::at(place(argument), what, remedy)
+}
