@@ -7,7 +7,7 @@ help:
 	@echo "make test    install what is missing, run every test"
 	@echo "make build   the program: target/release/dgmpm"
 	@echo "make setup   only install what is missing (Debian packages, .venv)"
-	@echo "make clean   remove build results, runs and .venv"
+	@echo "make clean   remove build results and runs; .venv stays"
 
 setup:
 	@tools/setup.sh
@@ -23,4 +23,4 @@ test: setup
 
 clean:
 	cargo clean
-	rm -rf runs .venv
+	rm -rf runs
