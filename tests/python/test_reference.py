@@ -95,6 +95,6 @@ def test_dolfinx_reads_a_mesh_and_agrees_with_the_stored_references(tmp_path, ce
     corners = square_corners(cells, distortion)
     nodes, inverse = np.unique(corners.reshape(-1, 2).round(12), axis=0, return_inverse=True)
     meshio.write(tmp_path / "mesh.xdmf", meshio.Mesh(nodes, [("quad", inverse.reshape(-1, 4))]))
-    command = [os.environ["DGMPM_DOLFINX_PYTHON"], REFERENCE / "dolfinx_impact.py", tmp_path / "mesh.xdmf", tmp_path / "fenics.npz"]
-    subprocess.run(command, check=True)
+    arguments = [REFERENCE / "dolfinx_impact.py", tmp_path / "mesh.xdmf", tmp_path / "fenics.npz", "--name", "Grid"]
+    subprocess.run([os.environ["DGMPM_DOLFINX_PYTHON"], *arguments], check=True)
     assert_close_to_stored(np.load(tmp_path / "fenics.npz"), 0.04)
