@@ -1,0 +1,26 @@
+# make demo     the paper's impact, from the mesh to the figures
+# make test     every test
+.PHONY: help setup build demo test clean
+
+help:
+	@echo "make demo    install what is missing, build, run the paper's impact with all methods, draw its figures"
+	@echo "make test    install what is missing, run every test"
+	@echo "make build   the program: target/release/dgmpm"
+	@echo "make setup   only install what is missing (Debian packages, .venv)"
+	@echo "make clean   remove build results and runs; .venv stays"
+
+setup:
+	@tools/setup.sh
+
+build: setup
+	cargo build --release
+
+demo: build
+	@tools/demo.sh
+
+test: setup
+	@tools/test.sh
+
+clean:
+	cargo clean
+	rm -rf runs

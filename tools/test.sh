@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# All tests: Rust (unit, integration, documentation), then Python. DOLFINx is used where it is or may be installed.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+# DOLFINx belongs to Debian's own python3; it finds no packages of .venv and needs none.
+dolfinx_python=/usr/bin/python3
+has_dolfinx() { "$dolfinx_python" -c 'import dolfinx' 2>/dev/null; }
+has_dolfinx || tools/apt.sh python3-dolfinx-real || true
+if has_dolfinx; then
+    export DGMPM_DOLFINX_PYTHON=$dolfinx_python
+else
+    echo "skipped: the comparisons with DOLFINx (python3-dolfinx-real is not there and could not be installed)"
+fi
+
+export DGMPM_PYTHON=$PWD/.venv/bin/python DGMPM_REQUIRE_PYTHON=1
+cargo test --release
+"$DGMPM_PYTHON" -m pytest -q tests/python
