@@ -12,7 +12,9 @@
 
 pub mod error;
 pub mod lane;
+pub mod tensor;
 pub mod quadrature;
+pub mod basis;
 pub mod mesh;
 pub mod cloud;
 pub mod operators;

@@ -81,12 +81,3 @@ pub enum Link {
     /// The boundary group with this index in [`Mesh::edge_groups`].
     Boundary(usize),
 }
-
-pub mod map;
-
-impl Mesh {
-    /// Corners X of a cell.
-    pub fn corners(&self, cell: usize) -> [[f64; 2]; 4] {
-        self.cells[cell].map(|node| self.nodes[node])
-    }
-}

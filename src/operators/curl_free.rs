@@ -82,7 +82,7 @@ fn complement(corners: &[[f64; 2]; 4], line: &Line) -> Result<Matrix<f64>, Error
 }
 
 fn mass(corners: &[[f64; 2]; 4], line: &Line, a: usize) -> f64 {
-    line.basis.weight_2d(a) * super::geometry::determinant(map::jacobian(corners, line.basis.node_2d(a)))
+    line.basis.weight_2d(a) * map::determinant(&map::jacobian(corners, line.basis.node_2d(a)))
 }
 
 /// Columns [direction][node]: gradients in X of the monomials of Q_N in xi and of P_(N+1) in (X - Xc)/h.
@@ -92,11 +92,10 @@ fn gradients(corners: &[[f64; 2]; 4], line: &Line) -> Vec<Vec<f64>> {
     let mut columns = Vec::new();
     for (i, j) in (0..m).flat_map(|i| (0..m).map(move |j| (i, j))).filter(|&(i, j)| i + j > 0) {
         columns.push(stack(nodes.iter().map(|&xi| {
-            let jacobian = map::jacobian(corners, xi);
-            let (c, det) = (super::geometry::cofactor(jacobian), super::geometry::determinant(jacobian));
+            let inverse = map::inverse(&map::jacobian(corners, xi));
             // Monomials about the middle are better conditioned and span the same space.
             let g = monomial_gradient([xi[0] - 0.5, xi[1] - 0.5], i, j);
-            [(g[0] * c[0] + g[1] * c[2]) / det, (g[0] * c[1] + g[1] * c[3]) / det]
+            [0, 1].map(|axis| g[0] * inverse[0][axis] + g[1] * inverse[1][axis])
         })));
     }
     for (i, j) in (0..=m).flat_map(|i| (0..=m - i).map(move |j| (i, j))).filter(|&(i, j)| i + j > 0) {

@@ -46,7 +46,7 @@ impl Geometry {
             let jacobians = corners.map(|c| map::jacobian(&c, line.basis.node_2d(a)));
             let cofactors = jacobians.map(cofactor);
             self.cofactor.extend((0..4).map(|k| F8(cofactors.map(|c| c[k]))));
-            let mass = jacobians.map(|j| line.basis.weight_2d(a) * determinant(j));
+            let mass = jacobians.map(|j| line.basis.weight_2d(a) * map::determinant(&j));
             self.mass.push(F8(mass));
             self.inverse_mass.push(F8(mass.map(|m| 1.0 / m)));
         }
@@ -71,11 +71,6 @@ impl Geometry {
         let all = [&self.cofactor, &self.mass, &self.inverse_mass, &self.normal, &self.length, &self.corners, &self.h];
         all.iter().map(|v| std::mem::size_of_val(&v[..])).sum()
     }
-}
-
-/// det of dX_a/dxi_b.
-pub fn determinant(j: [[f64; 2]; 2]) -> f64 {
-    j[0][0] * j[1][1] - j[0][1] * j[1][0]
 }
 
 /// J dxi_b/dX_a as [b][a], from dX_a/dxi_b as [a][b].

@@ -1,6 +1,5 @@
 //! Transfer between material points and grid nodes (18), (22) and derivatives at the points (20).
 
-use super::geometry::{cofactor, determinant};
 use super::matrix::{Matrix, Pool, classes};
 use super::{Blocks, Line};
 use crate::basis::MovingLeastSquares;
@@ -70,7 +69,7 @@ impl Points {
         let (class, examples) = classes(cells, key);
         let build = |&cell: &usize| match sampling {
             Sampling::Nodes => Ok(at_nodes(line)),
-            Sampling::Cloud(_) => at_points(line, of(cell), mesh.original[cell]),
+            Sampling::Cloud(_) => at_points(line, of(cell), mesh.number(cell)),
         };
         let all = examples.iter().map(build).collect::<Result<Vec<_>, Error>>()?;
         let pool = Pool::new(&blocks.cells, &class, all, interleave);
@@ -87,8 +86,8 @@ impl Points {
 
     fn push(&mut self, at: [([[f64; 2]; 4], [f64; 2]); LANES]) {
         let inverse = at.map(|(corners, xi)| {
-            let j = map::jacobian(&corners, xi);
-            cofactor(j).map(|c| c / determinant(j))
+            let [first, second] = map::inverse(&map::jacobian(&corners, xi));
+            [first[0], first[1], second[0], second[1]]
         });
         self.metric.extend((0..4).map(|k| F8(inverse.map(|m| m[k]))));
         self.parent.extend((0..2).map(|k| F8(at.map(|(_, xi)| xi[k]))));

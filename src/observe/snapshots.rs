@@ -1,0 +1,44 @@
+//! Snapshots of the grid unknowns, one file each: what `export` and a restart read.
+
+use super::{Observer, Schedule, View};
+use crate::error::Error;
+use crate::io::snapshot::Snapshot;
+use crate::state::{State, UNKNOWNS};
+use crate::step::Scheme;
+use std::path::{Path, PathBuf};
+
+/// Writes `<folder>/<step>.h5`.
+pub struct Snapshots {
+    schedule: Schedule,
+    folder: PathBuf,
+}
+
+impl Snapshots {
+    /// Snapshots into a folder that exists.
+    pub fn new(folder: &Path, schedule: Schedule) -> Self {
+        Self { schedule, folder: folder.to_owned() }
+    }
+}
+
+impl Observer for Snapshots {
+    fn schedule(&mut self) -> &mut Schedule {
+        &mut self.schedule
+    }
+
+    fn observe(&mut self, view: &View) -> Result<(), Error> {
+        take(view.scheme, view.state).write(&self.folder)
+    }
+}
+
+/// The state in the order of the mesh's cells.
+pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
+    let n = scheme.operators.nodes();
+    let all = state.unpack(&scheme.operators.blocks, n);
+    let (mut u, mut displacement) = (Vec::new(), Vec::new());
+    for cell in all.chunks(state.components * n) {
+        let (unknowns, others) = cell.split_at(UNKNOWNS * n);
+        u.extend_from_slice(unknowns);
+        displacement.extend_from_slice(others);
+    }
+    Snapshot { time: state.time, step: state.step, degree: scheme.operators.degree, u, displacement, internal: vec![] }
+}
