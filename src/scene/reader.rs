@@ -271,11 +271,12 @@ impl<'a> Reader<'a> {
     }
 
     fn count(&self, key: &str, want: usize, given: usize) -> Error {
-        self.wrong(
-            key,
-            format!("`{key}` must have {want} entries, not {given}"),
-            "components are in the order 1, 2 or 11, 12, 21, 22",
-        )
+        let order = match want {
+            2 => "one for each direction",
+            4 => "11, 12, 21, 22",
+            _ => "see the documentation of scenes",
+        };
+        self.wrong(key, format!("`{key}` must have {want} entries, not {given}"), order)
     }
 
     fn not(&self, key: &str, want: &str, item: &Item) -> Error {

@@ -1,1 +1,216 @@
-//! Tests.
+use super::*;
+
+const MINIMAL: &str = r#"
+[mesh]
+rectangle = { size = [3.0, 1.0], cells = [30, 10] }
+[[material]]
+law = "neo-hookean"
+young = 2e11
+poisson = 0.3
+density = 7800
+[[boundary]]
+group = "left"
+kind = "wall"
+[[boundary]]
+group = "right"
+kind = "free"
+[[boundary]]
+group = "bottom"
+kind = "symmetry"
+[[boundary]]
+group = "top"
+kind = "symmetry"
+[scheme]
+method = "ader-dgmpm"
+degree = 2
+[time]
+end = 1e-3
+"#;
+
+fn parse(text: &str, sets: &[&str]) -> Result<Scene> {
+    let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+    Scene::parse(text, Path::new("folder/case.toml"), &sets)
+}
+
+fn message(text: &str, sets: &[&str]) -> String {
+    parse(text, sets).unwrap_err().to_string()
+}
+
+#[test]
+fn defaults() {
+    let scene = parse(MINIMAL, &[]).unwrap();
+    assert_eq!((scene.title.as_str(), scene.name().as_str()), ("case", "case"));
+    assert_eq!(scene.mesh, Mesh::Rectangle { size: [3.0, 1.0], cells: [30, 10] });
+    assert_eq!(scene.cloud, Cloud { layout: Layout::Paper, per_direction: 3 });
+    assert_eq!(scene.materials[0].cloud, scene.cloud);
+    assert_eq!(scene.materials[0].parameters["young"], 2e11);
+    assert_eq!(scene.initial.deformation.each_ref().map(|f| f.constant().unwrap()), [1.0, 0.0, 0.0, 1.0]);
+    assert_eq!(scene.boundaries[0].condition, Condition::Wall { speed: Expression::number(0.0) });
+    assert_eq!(scene.curl, Curl::Lcf { alpha: 3.0 });
+    let scheme = Scheme {
+        method: Method::AderDgmpm,
+        degree: 2,
+        time_degree: 2,
+        flux: Flux::Rusanov,
+        step: Step::Safety(0.9),
+        sweeps: Sweeps::Paper,
+    };
+    assert_eq!(scene.scheme, scheme);
+    assert!(scene.outputs.is_empty() && scene.sources.is_empty());
+    let high = parse(MINIMAL, &["scheme.degree=4"]).unwrap();
+    assert_eq!(high.cloud, Cloud { layout: Layout::Midpoints, per_direction: 5 });
+    assert_eq!((high.curl, high.scheme.time_degree), (Curl::Lcf { alpha: 6.0 }, 4));
+}
+
+#[test]
+fn outputs() {
+    let text = format!(
+        "{MINIMAL}{}",
+        r#"
+[[output]]
+kind = "fields"
+every = 1e-4
+exact_times = true
+[[output]]
+kind = "line"
+name = "bottom"
+from = [0, 0]
+to = [3, 0]
+samples = 300
+at = [1e-3, 5e-4]
+[[output]]
+kind = "ledger"
+"#
+    );
+    let scene = parse(&text, &[]).unwrap();
+    let [fields, line, ledger] = &scene.outputs[..] else { panic!("three outputs") };
+    assert_eq!((fields.name.as_str(), &fields.when, fields.exact_times), ("fields", &When::Every(1e-4), true));
+    assert_eq!(fields.fields.len(), 7);
+    assert_eq!(line.what, What::Line { from: [0.0, 0.0], to: [3.0, 0.0], samples: 300 });
+    assert_eq!(line.when, When::At(vec![5e-4, 1e-3]));
+    assert_eq!(line.fields, [Field::CauchyStress, Field::Velocity]);
+    assert_eq!((&ledger.when, ledger.fields.len()), (&When::EverySteps(1), 0));
+}
+
+#[test]
+fn expressions_and_numbers() {
+    let more = r#"
+[initial]
+velocity = [-200, "300*sin(pi*x)"]
+[[source]]
+kind = "gravity"
+value = [0, -9.81]
+"#;
+    let sets = ["boundary.0.speed=10*t", "boundary.1.kind=traction", "boundary.1.value=[\"-1e8*step(1e-4-t)\", 0]"];
+    let scene = parse(&format!("{MINIMAL}{more}"), &sets).unwrap();
+    assert!((scene.initial.velocity[1].eval([0.5, 0.0], 0.0) - 300.0).abs() < 1e-9);
+    assert_eq!(scene.sources[0].value[1].constant(), Some(-9.81));
+    let Condition::Wall { speed } = &scene.boundaries[0].condition else { panic!("a wall") };
+    assert_eq!(speed.eval([0.0; 2], 2.0), 20.0);
+    let Condition::Traction([push, _]) = &scene.boundaries[1].condition else { panic!("a traction") };
+    assert!(push.depends_on_time());
+}
+
+#[test]
+fn sets_change_the_text_and_keep_comments() {
+    let text = MINIMAL.replace("degree = 2", "degree = 2   # N").replace("[time]", "cfl = 0.4\n# the end\n[time]");
+    let scene = parse(&text, &["scheme.degree=1", "scheme.safety=0.8", "scheme.method=rk-dgfem", "title=A b"]).unwrap();
+    assert_eq!((scene.scheme.degree, scene.scheme.method), (1, Method::RkDgfem));
+    assert_eq!((scene.scheme.step, scene.title.as_str()), (Step::Safety(0.8), "A b"));
+    let run = scene.to_toml();
+    assert!(run.contains("degree = 1   # N") && run.contains("# the end") && !run.contains("cfl"), "{run}");
+    let again = parse(&run, &[]).unwrap();
+    assert_eq!(serde_json::to_value(&scene).unwrap(), serde_json::to_value(&again).unwrap());
+}
+
+#[test]
+fn sets_replace_rivals_and_grow_lists() {
+    let file = MINIMAL.replace("rectangle = { size = [3.0, 1.0], cells = [30, 10] }", "file = \"a.msh\"");
+    let scene = parse(&file, &[]).unwrap();
+    assert_eq!(scene.mesh_path(), Some(PathBuf::from("folder/a.msh")));
+    let scene = parse(&file, &["mesh.rectangle.size=[1, 1]", "mesh.rectangle.cells=[2, 2]"]).unwrap();
+    assert_eq!(scene.mesh, Mesh::Rectangle { size: [1.0, 1.0], cells: [2, 2] });
+    let scene = parse(MINIMAL, &["mesh.rectangle.cells.1=7", "mesh.rectangle.cells.0=5"]).unwrap();
+    assert_eq!(scene.mesh, Mesh::Rectangle { size: [3.0, 1.0], cells: [5, 7] });
+    let scene = parse(MINIMAL, &["mesh.file=b.msh"]).unwrap();
+    assert_eq!(scene.mesh, Mesh::File("b.msh".into()));
+    let sets = ["output.0.kind=ledger", "output.1.kind=fields", "output.1.at=[1e-4]", "output.1.every_steps=5"];
+    let scene = parse(MINIMAL, &sets).unwrap();
+    assert_eq!(scene.outputs[1].when, When::EverySteps(5));
+    let scene = parse(MINIMAL, &["curl.control=off", "cloud={layout=\"gauss\"}"]).unwrap();
+    assert_eq!((scene.curl, scene.cloud.layout), (Curl::Off, Layout::Gauss));
+    let with_table = format!("{MINIMAL}[cloud]\nlayout = \"paper\" # where\n[curl]\ncontrol = \"lcf\"\n");
+    let scene = parse(&with_table, &["cloud={layout=\"gauss\"}", "curl.alpha=5"]).unwrap();
+    assert_eq!((scene.curl, scene.cloud.layout), (Curl::Lcf { alpha: 5.0 }, Layout::Gauss));
+}
+
+#[test]
+fn bad_sets_say_so() {
+    let table = [
+        ("scheme.metod=rk-dgfem", "--set scheme.metod=rk-dgfem: unknown key `metod`", "did you mean `method`"),
+        ("scheme.method=rk", "--set scheme.method=rk: unknown `method` \"rk\"", "\"rk-dgfem\""),
+        ("scheme.degree=9", "--set scheme.degree=9: `degree` is 9", "from 0 to 6"),
+        ("boundary.9.kind=free", "--set boundary.9.kind=free: `boundary.9` has no place", "0 to 3, and 4 appends"),
+        ("boundary.4.kind=free", "--set boundary.4.kind=free: ", "needs the key `group`"),
+        ("scheme.degree.x=1", "--set scheme.degree.x=1: ", "`scheme.degree` is a value"),
+        ("mesh.rectangle.cells.5=1", "--set mesh.rectangle.cells.5=1: ", "entries are 0 to 1"),
+        ("scheme.degree", "--set scheme.degree: there is no `=`", "key.path=value"),
+        ("=1", "--set =1: ", "key.path=value"),
+        ("time.end=[1", "--set time.end=[1: `[1` is not a TOML value", "brackets"),
+        ("time.end=-1", "--set time.end=-1: `end` is -1", "greater than 0"),
+        ("tme.end=1", "--set tme.end=1: unknown key `tme` in the scene", "did you mean `time`"),
+        ("boundary.0.group=lft", "--set boundary.0.group=lft: the mesh has no group \"lft\"", "did you mean `left`"),
+    ];
+    for (set, begin, words) in table {
+        let found = message(MINIMAL, &[set]);
+        assert!(found.starts_with(begin) && found.contains(words), "{set}: {found}");
+    }
+}
+
+#[test]
+fn an_error_of_the_file_keeps_its_line_when_sets_move_lines() {
+    let text = MINIMAL.replace("end = 1e-3", "end = 0").replace("[scheme]", "[scheme]\ncfl = 0.4");
+    let found = message(&text, &["scheme.safety=0.5", "cloud.layout=gauss", "scheme.flux=acoustic"]);
+    assert!(found.starts_with("folder/case.toml:26:7: `end` is 0"), "{found}");
+}
+
+#[test]
+fn groups() {
+    let names = |list: &[&str]| list.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+    let text = MINIMAL.replace("rectangle = { size = [3.0, 1.0], cells = [30, 10] }", "file = \"a.msh\"");
+    let edges = names(&["left", "right", "bottom", "top"]);
+    let scene = parse(&text, &[]).unwrap();
+    scene.check_groups(&names(&["a", "b"]), &edges).unwrap();
+    let found = scene.check_groups(&[], &names(&["left", "right", "botom", "top"])).unwrap_err().to_string();
+    assert!(found.starts_with("folder/case.toml:16:9: the mesh has no group \"bottom\""), "{found}");
+    assert!(found.contains("did you mean `botom`? its groups of boundary edges are left, right"), "{found}");
+    let found = scene.check_groups(&[], &names(&["left", "right", "bottom", "top", "hole"])).unwrap_err().to_string();
+    assert!(found.starts_with("folder/case.toml:9:1: the group hole of the mesh has no [[boundary]]"), "{found}");
+    assert!(found.contains("kind = \"free\""), "{found}");
+    let some = parse(&text, &["material.0.group=a"]).unwrap();
+    let found = some.check_groups(&names(&["a", "b", "c"]), &edges).unwrap_err().to_string();
+    assert!(found.contains("the groups b, c of the mesh have no [[material]]"), "{found}");
+    let found = some.check_groups(&names(&["b"]), &edges).unwrap_err().to_string();
+    assert!(found.starts_with("--set material.0.group=a: the mesh has no group \"a\""), "{found}");
+    let found = some.check_groups(&[], &edges).unwrap_err().to_string();
+    assert!(found.contains("no named group of cells"), "{found}");
+}
+
+#[test]
+fn errors_of_later_checks_have_places_too() {
+    let scene = parse(MINIMAL, &["scheme.cfl=0.4"]).unwrap();
+    assert!(scene.error("scheme.cfl", "a", "b").to_string().starts_with("--set scheme.cfl=0.4: a"));
+    assert!(scene.error("scheme.degree", "a", "b").to_string().starts_with("folder/case.toml:23:10: a"));
+    assert!(scene.error("initial.velocity", "a", "b").to_string().starts_with("folder/case.toml:1:1: a"));
+}
+
+#[test]
+fn layouts_per_material() {
+    let text = MINIMAL.replace("density = 7800", "density = 7800\nlayout = \"jitter\"\nseed = 7\nper_direction = 4");
+    let scene = parse(&text, &[]).unwrap();
+    assert_eq!(scene.cloud, Cloud { layout: Layout::Paper, per_direction: 3 });
+    assert_eq!(scene.materials[0].cloud, Cloud { layout: Layout::Jitter { seed: 7, amount: 0.25 }, per_direction: 4 });
+    let file = parse(MINIMAL, &["cloud={layout=\"file\", path=\"points.vtu\"}"]).unwrap();
+    assert_eq!(file.cloud_path(), Some(PathBuf::from("folder/points.vtu")));
+    assert!(message(&text, &["cloud={layout=\"file\", path=\"p\"}"]).contains("the points come from the file"));
+}

@@ -80,7 +80,8 @@ impl<'a> Parser<'a> {
     }
 
     fn comparison(&mut self) -> Result<(), Fault> {
-        const SIGNS: [(&str, fn(f64, f64) -> f64); 6] = [
+        type Compare = fn(f64, f64) -> f64;
+        const SIGNS: [(&str, Compare); 6] = [
             ("<=", |a, b| f64::from(a <= b)),
             (">=", |a, b| f64::from(a >= b)),
             ("==", |a, b| f64::from(a == b)),

@@ -90,8 +90,8 @@ fn what_it_depends_on() {
     assert_eq!(compile(Expression::number(-1.5e300).source()).constant(), Some(-1.5e300));
 }
 
-/// A debug aid rather than a test: the cost of one evaluation, with --nocapture.
 #[test]
+#[ignore = "a measurement, to be read with --nocapture"]
 fn cost() {
     let pulse = Expression::compile("-1e8*step(1e-4 - t)*exp(-((x - 0.5)/0.1)^2)*sin(pi*y)").unwrap();
     let started = std::time::Instant::now();

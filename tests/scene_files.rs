@@ -1,0 +1,262 @@
+//! The scene files of the project, and bad scenes with the place and words of their messages.
+
+use std::path::Path;
+
+use dgmpm::scene::{Mesh, Scene};
+use proptest::prelude::*;
+
+/// A good scene; the rows of the tables replace one piece of it.
+const GOOD: &str = r#"title = "good"
+[mesh]
+rectangle = { size = [3.0, 1.0], cells = [30, 10] }
+[cloud]
+layout = "paper"
+[[material]]
+group = "body"
+law = "neo-hookean"
+young = 2e11
+poisson = 0.3
+density = 7800.0
+[initial]
+velocity = ["-200", "0"]
+[[boundary]]
+group = "left"
+kind = "wall"
+[[boundary]]
+group = "right"
+kind = "free"
+[[boundary]]
+group = "bottom"
+kind = "symmetry"
+[[boundary]]
+group = "top"
+kind = "traction"
+value = ["0", "1e6*t"]
+[[source]]
+kind = "body-force"
+value = ["0", "-10*x"]
+[curl]
+control = "lcf"
+[scheme]
+method = "ader-dgmpm"
+degree = 2
+cfl = 0.4
+[time]
+end = 1e-3
+[[output]]
+kind = "fields"
+at = [5e-4, 1e-3]
+[[output]]
+kind = "line"
+name = "bottom"
+from = [0.0, 0.0]
+to = [3.0, 0.0]
+samples = 300
+every = 1e-4
+fields = ["velocity"]
+"#;
+
+/// What replaces what, then line, column and words of the message.
+type Row = (&'static str, &'static str, usize, usize, &'static [&'static str]);
+
+const BAD: &[Row] = &[
+    // syntax
+    ("degree = 2", "degree = = 2", 34, 10, &["not TOML"]),
+    ("degree = 2", "degree = 2\ndegree = 3", 35, 1, &["not TOML", "duplicate key"]),
+    // unknown and missing keys
+    ("title =", "titel =", 1, 1, &["unknown key `titel`", "did you mean `title`?", "mesh, cloud, material"]),
+    (
+        "cfl =",
+        "clf =",
+        35,
+        1,
+        &["unknown key `clf` in [scheme]", "did you mean `cfl`", "method, degree, time_degree, flux"],
+    ),
+    ("method =", "metod =", 33, 1, &["unknown key `metod`", "did you mean `method`", "time_degree"]),
+    ("method = \"ader-dgmpm\"\n", "", 32, 1, &["[scheme] needs the key `method`", "ader-dgfem"]),
+    ("[time]\nend = 1e-3\n", "", 1, 1, &["needs the key `time`", "end"]),
+    ("end = 1e-3", "", 36, 1, &["[time] needs the key `end`"]),
+    ("[time]", "[tine]", 36, 2, &["unknown key `tine`", "did you mean `time`"]),
+    ("[[boundary]]\ngroup = \"left\"", "[boundary]\ngroup = \"left\"", 17, 3, &["not TOML"]),
+    ("[[source]]", "[source]", 27, 1, &["`source` is a table", "[[source]]"]),
+    ("cells = [30, 10]", "cels = [30, 10]", 3, 34, &["unknown key `cels` in [mesh.rectangle]", "cells"]),
+    ("young = 2e11\n", "", 6, 1, &["[[material]] needs the key `young`", "Pa"]),
+    ("young =", "yuong =", 9, 1, &["unknown key `yuong`", "did you mean `young`"]),
+    (
+        "kind = \"free\"",
+        "kind = \"free\"\nvalue = [0, 0]",
+        20,
+        1,
+        &["unknown key `value`", "of kind \"free\"", "group, kind"],
+    ),
+    ("value = [\"0\", \"1e6*t\"]\n", "", 23, 1, &["needs the key `value`", "Pa"]),
+    ("[time]", "impedance = \"exact\"\n[time]", 36, 1, &["`impedance` is not built yet"]),
+    ("[time]", "[limiter]\n[time]", 36, 2, &["`limiter` is not built yet"]),
+    // types
+    ("degree = 2", "degree = \"two\"", 34, 10, &["`degree` is the text \"two\"", "whole number from 0 to 6"]),
+    ("degree = 2", "degree = 2.5", 34, 10, &["`degree` is 2.5", "whole number"]),
+    ("young = 2e11", "young = \"2e11\"", 9, 9, &["`young` is the text \"2e11\"", "a number, greater than 0"]),
+    ("young = 2e11", "young = nan", 9, 9, &["`young` is NaN", "a number"]),
+    ("title = \"good\"", "title = 5", 1, 9, &["`title` is 5", "text"]),
+    ("[30, 10]", "[30, 10, 2]", 3, 42, &["`cells` must have 2 entries, not 3"]),
+    ("[30, 10]", "[30, 1.5]", 3, 47, &["entry 1 of `cells` is 1.5", "whole"]),
+    ("[\"-200\", \"0\"]", "\"-200\"", 13, 12, &["a list of 2 expressions"]),
+    ("[\"-200\", \"0\"]", "[\"-200\", true]", 13, 21, &["must be an expression", "true"]),
+    ("[5e-4, 1e-3]", "5e-4", 40, 6, &["list of numbers"]),
+    // ranges
+    ("density = 7800.0", "density = -1", 11, 11, &["`density` is -1", "greater than 0"]),
+    ("poisson = 0.3", "poisson = 0.5", 10, 11, &["`poisson` is 0.5", "less than 0.5"]),
+    ("degree = 2", "degree = 7", 34, 10, &["0 to 6"]),
+    ("cfl = 0.4", "cfl = 0", 35, 7, &["`cfl` is 0", "greater than 0"]),
+    ("end = 1e-3", "end = -1e-3", 37, 7, &["`end` is -0.001"]),
+    ("end = 1e-3", "end = 6e-4", 40, 13, &["after the end of the run, 0.0006 s"]),
+    ("[5e-4, 1e-3]", "[0.0]", 40, 7, &["entry 0 of `at` is 0", "greater than 0"]),
+    ("every = 1e-4", "every = 1", 47, 9, &["longer than the run"]),
+    ("samples = 300", "samples = 1", 46, 11, &["`samples` is 1", "from 2"]),
+    ("to = [3.0, 0.0]", "to = [0.0, 0.0]", 45, 6, &["no length"]),
+    ("velocity = [\"-200\", \"0\"]", "deformation = [1, 1, 1, 1]", 13, 15, &["determinant J = 0"]),
+    // names
+    (
+        "\"ader-dgmpm\"",
+        "\"ader-dgmp\"",
+        33,
+        10,
+        &["unknown `method` \"ader-dgmp\"", "did you mean `ader-dgmpm`", "\"rk-dgfem\""],
+    ),
+    ("\"neo-hookean\"", "\"neohook\"", 8, 7, &["unknown `law` \"neohook\"", "\"neo-hookean\""]),
+    ("\"paper\"", "\"papers\"", 5, 10, &["did you mean `paper`", "\"jitter\""]),
+    ("\"wall\"", "\"periodic\"", 16, 8, &["`kind` = \"periodic\" is not built yet", "\"absorbing\""]),
+    ("\"wall\"", "\"wal\"", 16, 8, &["did you mean `wall`", "\"clamped\""]),
+    ("\"lcf\"", "\"auto\"", 31, 11, &["not built yet"]),
+    ("[\"velocity\"]", "[\"velocty\"]", 48, 11, &["did you mean `velocity`", "\"von_mises\""]),
+    ("[\"velocity\"]", "[\"velocity\", \"velocity\"]", 48, 23, &["there twice"]),
+    ("name = \"bottom\"", "name = \"../x\"", 43, 8, &["name of a file"]),
+    ("name = \"bottom\"\n", "", 41, 1, &["needs the key `name`", "lines/<name>.csv"]),
+    // both or none, duplicates
+    ("cfl = 0.4", "cfl = 0.4\nsafety = 0.9", 36, 10, &["both `cfl` and `safety`"]),
+    ("every = 1e-4", "every = 1e-4\nevery_steps = 3", 48, 15, &["both `every` and `every_steps`"]),
+    ("every = 1e-4\n", "", 41, 1, &["needs the key `at`", "every_steps"]),
+    ("[cloud]", "file = \"a.msh\"\n[cloud]", 3, 13, &["both `file` and `rectangle`"]),
+    ("group = \"right\"", "group = \"left\"", 18, 9, &["two [[boundary]] on the group \"left\""]),
+    ("kind = \"line\"\n", "kind = \"fields\"\n", 44, 1, &["unknown key `from`"]),
+    // groups of the rectangle
+    (
+        "group = \"top\"",
+        "group = \"tpo\"",
+        24,
+        9,
+        &["the mesh has no group \"tpo\"", "did you mean `top`", "left, right, bottom, top"],
+    ),
+    ("group = \"body\"", "group = \"steel\"", 7, 9, &["no group \"steel\"", "body"]),
+    (
+        "[[boundary]]\ngroup = \"right\"\nkind = \"free\"\n",
+        "",
+        14,
+        1,
+        &["the group right of the mesh has no [[boundary]]", "free"],
+    ),
+    // expressions
+    ("\"1e6*t\"", "\"1e6*z\"", 26, 20, &["unknown name `z`", "x, y (m, at t = 0), t (s)"]),
+    ("\"1e6*t\"", "\"1e6*sn(t)\"", 26, 20, &["did you mean `sin`", "atan2"]),
+    ("\"1e6*t\"", "\"1e6 t\"", 26, 20, &["unexpected `t`", "2*x"]),
+    ("\"-200\"", "\"-200*t\"", 13, 13, &["`velocity` depends on t"]),
+    ("kind = \"body-force\"", "kind = \"gravity\"", 29, 15, &["gravity is constant"]),
+];
+
+fn parse(text: &str) -> dgmpm::error::Result<Scene> {
+    Scene::parse(text, Path::new("case.toml"), &[])
+}
+
+#[test]
+fn bad_scenes_say_what_where_and_what_exists() {
+    parse(GOOD).unwrap();
+    let mut failed = Vec::new();
+    for (old, new, line, column, words) in BAD {
+        assert!(GOOD.contains(old), "the table is wrong: {old}");
+        let message = match parse(&GOOD.replacen(old, new, 1)) {
+            Ok(_) => "no error".to_owned(),
+            Err(error) => error.to_string(),
+        };
+        let place = format!("case.toml:{line}:{column}: ");
+        if !message.starts_with(&place) || words.iter().any(|word| !message.contains(word)) {
+            failed.push(format!("{old} -> {new}\n  wanted {place}{words:?}\n  found  {message}"));
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+#[test]
+fn two_materials() {
+    let second = "[[material]]\ngroup = \"body\"\nlaw = \"neo-hookean\"\nyoung = 1\npoisson = 0\ndensity = 1\n";
+    let text = format!("{GOOD}{second}");
+    let message = parse(&text).unwrap_err().to_string();
+    assert!(message.starts_with("case.toml:50:9: two [[material]] on the group \"body\""), "{message}");
+    let message = parse(&text.replacen("group = \"body\"\n", "", 1)).unwrap_err().to_string();
+    assert!(message.starts_with("case.toml:6:1: [[material]] needs the key `group`"), "{message}");
+}
+
+fn scene_files() -> Vec<std::path::PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes");
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    files.sort();
+    files
+}
+
+#[test]
+fn every_scene_of_the_project_is_good_and_survives_a_round_trip() {
+    let files = scene_files();
+    assert!(files.len() >= 4);
+    for path in files {
+        let scene = Scene::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let Mesh::File(mesh) = &scene.mesh else { panic!("a mesh file") };
+        assert_eq!(mesh.file_stem().unwrap(), path.file_stem().unwrap());
+        assert_eq!(scene.to_toml(), std::fs::read_to_string(&path).unwrap());
+        let changed = Scene::load(&path, &["scheme.safety=0.5".to_owned(), "title=changed".to_owned()]).unwrap();
+        let again = Scene::parse(&changed.to_toml(), &path, &[]).unwrap();
+        assert_eq!(serde_json::to_value(&changed).unwrap(), serde_json::to_value(&again).unwrap());
+        assert_eq!(again.title, "changed");
+    }
+}
+
+#[test]
+fn files_that_cannot_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let message = Scene::load(&folder.path().join("none.toml"), &[]).unwrap_err().to_string();
+    assert!(message.contains("none.toml: cannot read the scene"), "{message}");
+    let path = folder.path().join("bytes.toml");
+    std::fs::write(&path, b"a = 1\nb = \xff").unwrap();
+    let message = Scene::load(&path, &[]).unwrap_err().to_string();
+    assert!(message.contains("bytes.toml:2:5: this is not UTF-8"), "{message}");
+}
+
+/// A piece of the good scene replaced by another piece, or by anything.
+fn mangled() -> impl Strategy<Value = String> {
+    (0..GOOD.len(), 0..40usize, "\\PC{0,12}|[\\[\\]{}=\".,0-9a-z\n]{0,12}").prop_map(|(start, length, new)| {
+        let end = (start + length).min(GOOD.len());
+        format!("{}{new}{}", &GOOD[..start], &GOOD[end..])
+    })
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_make_load_panic(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("case.toml");
+        std::fs::write(&path, bytes).unwrap();
+        let _ = Scene::load(&path, &[]);
+    }
+
+    #[test]
+    fn no_text_makes_it_panic(text in mangled()) {
+        let _ = parse(&text);
+    }
+
+    #[test]
+    fn no_set_makes_it_panic(
+        path in "(title|mesh|scheme|boundary|output|cloud|curl|initial|0|1|9)(\\.(0|1|5|kind|at|cells|file|rectangle|cfl|x)){0,3}",
+        value in "\\PC{0,10}|[\\[\\]{}=\".,0-9a-z]{0,8}",
+    ) {
+        let _ = Scene::parse(GOOD, Path::new("case.toml"), &[format!("{path}={value}")]);
+    }
+}
