@@ -10,6 +10,8 @@
 
 #![deny(missing_docs)]
 
+#[macro_use]
+mod names;
 pub mod error;
 pub mod lane;
 pub mod tensor;
@@ -25,6 +27,8 @@ pub mod boundary;
 pub mod source;
 pub mod step;
 pub mod io;
+pub mod observe;
+pub mod run;
 pub mod scene;
 pub mod cli;
 

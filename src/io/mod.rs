@@ -12,6 +12,7 @@ pub mod grid;
 pub mod hash;
 pub mod hdf5;
 pub mod mesh_file;
+pub mod operators_file;
 pub mod pending;
 pub mod pvd;
 pub mod snapshot;

@@ -3,18 +3,27 @@
 use super::{Field, Observer, Schedule, Solution, View};
 use crate::cloud::locate::Locator;
 use crate::error::Error;
+use crate::io::csv::Table;
 use crate::mesh::Mesh;
-use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// Samples s_i = i L / (samples - 1); a point on an edge belongs to the cell of the lowest number.
+/// What a line samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Samples {
+    /// First and last point, reference coordinates in m.
+    pub ends: [[f64; 2]; 2],
+    /// Their number, at least 2: s_i = i L / (count - 1).
+    pub count: usize,
+    /// The fields.
+    pub fields: Vec<Field>,
+}
+
+/// Writes the rows t, s, x, y, components; a point on an edge belongs to the cell of the lowest number.
 pub struct Line {
     schedule: Schedule,
-    path: PathBuf,
-    file: BufWriter<File>,
-    samples: Vec<Sample>,
+    table: Table,
     fields: Vec<Field>,
+    at: Vec<Sample>,
     /// The law of each cell.
     material: Vec<usize>,
 }
@@ -31,32 +40,32 @@ impl Line {
     ///
     /// # Errors
     /// A sample outside of the mesh; a file that cannot be made.
-    pub fn create(path: &Path, mesh: &Mesh, material: &[usize], ends: [[f64; 2]; 2], samples: usize, fields: Vec<Field>, schedule: Schedule) -> Result<Self, Error> {
+    pub fn create(path: &Path, mesh: &Mesh, material: &[usize], samples: &Samples, schedule: Schedule) -> Result<Self, Error> {
+        let at = samples.locate(mesh)?;
+        let names: Vec<String> = samples.fields.iter().flat_map(|field| field.components()).collect();
+        let columns: Vec<&str> = ["t", "s", "x", "y"].into_iter().chain(names.iter().map(String::as_str)).collect();
+        let table = Table::create(path, &columns)?;
+        Ok(Self { schedule, table, fields: samples.fields.clone(), at, material: material.to_vec() })
+    }
+}
+
+impl Samples {
+    fn locate(&self, mesh: &Mesh) -> Result<Vec<Sample>, Error> {
         let locator = Locator::new(mesh);
-        let length = (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]);
+        let [from, to] = self.ends;
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
         let sample = |i: usize| {
-            let share = i as f64 / (samples - 1) as f64;
-            let x = [0, 1].map(|k| if i + 1 == samples { ends[1][k] } else { ends[0][k] + share * (ends[1][k] - ends[0][k]) });
+            let share = i as f64 / (self.count - 1) as f64;
+            let x = [0, 1].map(|k| if i + 1 == self.count { to[k] } else { from[k] + share * (to[k] - from[k]) });
             let (cell, xi) = locator.find(x).ok_or_else(|| {
                 Error::input(
-                    format!("sample {} of line {} at ({}, {}) lies outside of the mesh", i + 1, path.display(), x[0], x[1]),
+                    format!("sample {} of {} of a line, at ({}, {}), lies outside of the mesh", i + 1, self.count, x[0], x[1]),
                     "choose `from` and `to` inside of the body in its initial configuration",
                 )
             })?;
             Ok(Sample { s: share * length, x, cell, xi })
         };
-        let samples = (0..samples).map(sample).collect::<Result<Vec<_>, Error>>()?;
-        let file = File::create(path).map_err(|why| Error::output(path, why))?;
-        let mut line =
-            Self { schedule, path: path.to_owned(), file: BufWriter::new(file), samples, fields, material: material.to_vec() };
-        let names: Vec<String> = line.fields.iter().flat_map(|field| field.components()).collect();
-        line.write(&format!("t,s,x,y,{}\n", names.join(",")))?;
-        Ok(line)
-    }
-
-    fn write(&mut self, text: &str) -> Result<(), Error> {
-        let written = self.file.write_all(text.as_bytes()).and_then(|()| self.file.flush());
-        written.map_err(|why| Error::output(&self.path, why))
+        (0..self.count).map(sample).collect()
     }
 }
 
@@ -66,22 +75,13 @@ impl Observer for Line {
     }
 
     fn observe(&mut self, view: &View) -> Result<(), Error> {
-        let operators = &view.scheme.operators;
-        let solution = Solution {
-            basis: &operators.line.basis,
-            laws: &view.scheme.laws,
-            material: &self.material,
-            components: view.state.components,
-            u: view.state.unpack(&operators.blocks, operators.nodes()),
-        };
-        let mut text = String::new();
-        for sample in &self.samples {
+        let solution = Solution::of_state(view.scheme, view.state, &self.material);
+        for sample in &self.at {
             let point = solution.at(sample.cell, sample.xi);
             let mut row = vec![view.state.time, sample.s, sample.x[0], sample.x[1]];
             self.fields.iter().for_each(|field| field.push(solution.law(sample.cell), &point, &mut row));
-            text.push_str(&row.iter().map(|x| format!("{x:e}")).collect::<Vec<_>>().join(","));
-            text.push('\n');
+            self.table.push(&row)?;
         }
-        self.write(&text)
+        self.table.flush()
     }
 }

@@ -11,9 +11,9 @@ mod solution;
 
 pub use fields::Field;
 pub use ledger::Ledger;
-pub use line::Line;
+pub use line::{Line, Samples};
 pub use schedule::{Schedule, When};
-pub use snapshots::{Snapshots, take};
+pub use snapshots::{Snapshots, take, write};
 pub use solution::{Point, Solution};
 
 use crate::error::Error;

@@ -2,7 +2,7 @@
 
 use super::{Observer, Schedule, View};
 use crate::error::Error;
-use crate::io::snapshot::Snapshot;
+use crate::io::snapshot::{self, Snapshot};
 use crate::state::{State, UNKNOWNS};
 use crate::step::Scheme;
 use std::path::{Path, PathBuf};
@@ -26,8 +26,18 @@ impl Observer for Snapshots {
     }
 
     fn observe(&mut self, view: &View) -> Result<(), Error> {
-        take(view.scheme, view.state).write(&self.folder)
+        write(view.scheme, view.state, &self.folder).map(|_| ())
     }
+}
+
+/// Writes a state into a folder of snapshots; the path of the file.
+///
+/// # Errors
+/// Where the file cannot be written.
+pub fn write(scheme: &Scheme, state: &State, folder: &Path) -> Result<PathBuf, Error> {
+    let path = snapshot::path(folder, state.step);
+    take(scheme, state).write(&path)?;
+    Ok(path)
 }
 
 /// The state in the order of the mesh's cells.

@@ -2,7 +2,9 @@
 
 use crate::basis::Lagrange;
 use crate::material::Law;
-use crate::state::UNKNOWNS;
+use crate::io::snapshot::Snapshot;
+use crate::state::{State, UNKNOWNS};
+use crate::step::Scheme;
 
 /// The unknowns at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +32,33 @@ pub struct Solution<'a> {
     pub u: Vec<f64>,
 }
 
-impl Solution<'_> {
+impl<'a> Solution<'a> {
+    /// That of a state; `material` gives the law of each cell.
+    pub fn of_state(scheme: &'a Scheme, state: &State, material: &'a [usize]) -> Self {
+        let operators = &scheme.operators;
+        Self {
+            basis: &operators.line.basis,
+            laws: &scheme.laws,
+            material,
+            components: state.components,
+            u: state.unpack(&operators.blocks, operators.nodes()),
+        }
+    }
+
+    /// That of a snapshot.
+    pub fn of_snapshot(snapshot: &Snapshot, basis: &'a Lagrange, laws: &'a [Law], material: &'a [usize]) -> Self {
+        let nodes = basis.len() * basis.len();
+        let components = if snapshot.displacement.is_empty() { UNKNOWNS } else { UNKNOWNS + 2 };
+        let mut u = Vec::with_capacity(snapshot.u.len() + snapshot.displacement.len());
+        for (cell, unknowns) in snapshot.u.chunks(UNKNOWNS * nodes).enumerate() {
+            u.extend_from_slice(unknowns);
+            if !snapshot.displacement.is_empty() {
+                u.extend_from_slice(&snapshot.displacement[2 * nodes * cell..2 * nodes * (cell + 1)]);
+            }
+        }
+        Self { basis, laws, material, components, u }
+    }
+
     /// The law of a cell.
     pub fn law(&self, cell: usize) -> &Law {
         &self.laws[self.material[cell]]

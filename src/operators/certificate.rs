@@ -4,6 +4,7 @@ use super::{Line, Sampling};
 use crate::basis::MovingLeastSquares;
 use crate::error::Error;
 use crate::mesh::{Mesh, map};
+use rayon::prelude::*;
 
 /// The certificate of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,14 +26,10 @@ pub struct Certificate {
 /// # Errors
 /// As for the fit itself.
 pub fn certify(mesh: &Mesh, line: &Line, sampling: Sampling) -> Result<Vec<Certificate>, Error> {
-    let nodes: Vec<[f64; 2]> = (0..line.m * line.m).map(|a| line.basis.node_2d(a)).collect();
-    let of = |cell: usize| match sampling {
-        Sampling::Nodes => &nodes[..],
-        Sampling::Cloud(cloud) => cloud.of(cell),
-    };
-    let key = |cell: usize| of(cell).iter().flatten().map(|x| x.to_bits()).collect::<Vec<u64>>();
-    let (class, examples) = super::matrix::classes(mesh.cells.len(), key);
-    let fits = examples.iter().map(|&cell| quality(line, of(cell))).collect::<Result<Vec<_>, Error>>()?;
+    let nodes = line.nodes();
+    let (class, examples) = sampling.classes(&nodes, mesh.cells.len());
+    let fit = |&cell: &usize| quality(line, sampling.of(&nodes, cell));
+    let fits = examples.par_iter().map(fit).collect::<Result<Vec<_>, Error>>()?;
     Ok((0..mesh.cells.len()).map(|cell| Certificate { h: map::h_e(&mesh.corners(cell)), ..fits[class[cell]] }).collect())
 }
 

@@ -6,10 +6,14 @@ use crate::error::Error;
 use crate::lane::F8;
 use crate::mesh::{Mesh, map};
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 
 /// Singular values below this share of the largest are rounding: the set of columns is rank-deficient by construction,
 /// with ranks 5, 10, 17 of 8, 18, 32 on affine cells and 6, 12, 20 on others (N = 1, 2, 3).
 const RANK_TOLERANCE: f64 = 1e-9;
+
+/// C of all blocks.
+pub type CurlPool = Pool<Matrix<f64>, Matrix<F8>>;
 
 /// The complement of the gradients: F - Pi F = C (C^T W F), C of 2 (N+1)^2 rows (direction, node), W the mass matrix.
 ///
@@ -18,7 +22,7 @@ const RANK_TOLERANCE: f64 = 1e-9;
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurlFree {
     /// C by class of congruent cells.
-    pub pool: Pool<Matrix<f64>, Matrix<F8>>,
+    pub pool: CurlPool,
 }
 
 impl CurlFree {
@@ -26,7 +30,7 @@ impl CurlFree {
     ///
     /// # Errors
     /// Where a singular value decomposition does not converge, which a checked mesh does not cause.
-    pub fn new(mesh: &Mesh, blocks: &Blocks, line: &Line) -> Result<Self, Error> {
+    pub fn matrices(mesh: &Mesh, blocks: &Blocks, line: &Line) -> Result<CurlPool, Error> {
         let size = mesh.nodes.iter().flatten().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
         // Cells whose edges agree to 1e-12 of the mesh are congruent up to rounding of the node coordinates.
         let key = |cell: usize| {
@@ -35,13 +39,12 @@ impl CurlFree {
         };
         let (class, examples) = classes(mesh.cells.len(), key);
         let all =
-            examples.iter().map(|&cell| complement(&mesh.corners(cell), line)).collect::<Result<Vec<_>, Error>>()?;
+            examples.par_iter().map(|&cell| complement(&mesh.corners(cell), line)).collect::<Result<Vec<_>, Error>>()?;
         let columns = all.iter().map(|c| c.columns).max().unwrap_or(0);
-        let pool = Pool::new(&blocks.cells, &class, all, |lanes| {
+        Ok(Pool::new(&blocks.cells, &class, all, |lanes| {
             let padded = lanes.map(|c| widen(c, columns));
             Matrix::interleave(padded.each_ref())
-        });
-        Ok(Self { pool })
+        }))
     }
 
     /// Bytes held.
@@ -88,7 +91,7 @@ fn mass(corners: &[[f64; 2]; 4], line: &Line, a: usize) -> f64 {
 /// Columns [direction][node]: gradients in X of the monomials of Q_N in xi and of P_(N+1) in (X - Xc)/h.
 fn gradients(corners: &[[f64; 2]; 4], line: &Line) -> Vec<Vec<f64>> {
     let (m, centre, h) = (line.m as i32, map::position(corners, [0.5, 0.5]), map::h_e(corners));
-    let nodes: Vec<[f64; 2]> = (0..line.m * line.m).map(|a| line.basis.node_2d(a)).collect();
+    let nodes = line.nodes();
     let mut columns = Vec::new();
     for (i, j) in (0..m).flat_map(|i| (0..m).map(move |j| (i, j))).filter(|&(i, j)| i + j > 0) {
         columns.push(stack(nodes.iter().map(|&xi| {

@@ -6,6 +6,7 @@ pub mod curl_free;
 pub mod geometry;
 pub mod matrix;
 pub mod points;
+pub mod stored;
 
 pub use blocks::{Blocks, Neighbour};
 pub use certificate::Certificate;
@@ -13,6 +14,7 @@ pub use curl_free::CurlFree;
 pub use geometry::Geometry;
 pub use matrix::{Matrix, Pool, Share};
 pub use points::{PointMatrices, Points, Sampling};
+pub use stored::Stored;
 
 use crate::basis::Lagrange;
 use crate::error::Error;
@@ -52,12 +54,17 @@ impl Operators {
     /// # Errors
     /// A cell whose points cannot carry Q_N, by number and with the remedy.
     pub fn build(mesh: &Mesh, links: &[[Link; 4]], material: &[usize], needs: &Needs) -> Result<Self, Error> {
-        let line = Line::new(needs.degree);
-        let blocks = Blocks::new(material, links);
+        let (line, blocks) = (Line::new(needs.degree), Blocks::new(material, links));
+        let stored = Stored::build(mesh, &blocks, &line, needs)?;
+        Ok(Self::assemble(mesh, line, blocks, needs, stored))
+    }
+
+    /// Adds to stored matrices what is derived from the mesh at once.
+    pub fn assemble(mesh: &Mesh, line: Line, blocks: Blocks, needs: &Needs, stored: Stored) -> Self {
         let geometry = Geometry::new(mesh, &blocks, &line);
-        let points = needs.sampling.map(|s| Points::new(mesh, &blocks, &line, s)).transpose()?;
-        let curl_free = needs.curl_free.then(|| CurlFree::new(mesh, &blocks, &line)).transpose()?;
-        Ok(Self { degree: needs.degree, line, blocks, geometry, points, curl_free })
+        let points = needs.sampling.zip(stored.points).map(|(s, pool)| Points::new(mesh, &blocks, &line, s, pool));
+        let curl_free = stored.curl_free.map(|pool| CurlFree { pool });
+        Self { degree: needs.degree, line, blocks, geometry, points, curl_free }
     }
 
     /// (N+1)^2.
@@ -98,6 +105,11 @@ impl Line {
         let weak = (0..m * m).map(|e| w[e % m] * slope[(e % m) * m + e / m] / w[e / m]).collect();
         let ends = [basis.values(0.0), basis.values(1.0)];
         Self { basis, m, slope, weak, ends }
+    }
+
+    /// Parent coordinates of the nodes a = i M + j.
+    pub fn nodes(&self) -> Vec<[f64; 2]> {
+        (0..self.m * self.m).map(|a| self.basis.node_2d(a)).collect()
     }
 }
 

@@ -7,6 +7,7 @@ use crate::cloud::Cloud;
 use crate::error::Error;
 use crate::lane::{Coefficient, F8, LANES};
 use crate::mesh::{Mesh, map};
+use rayon::prelude::*;
 
 /// Where the predictor samples the law.
 #[derive(Debug, Clone, Copy)]
@@ -16,6 +17,24 @@ pub enum Sampling<'a> {
     /// At the material points: ADER-DGMPM.
     Cloud(&'a Cloud),
 }
+
+impl<'a> Sampling<'a> {
+    /// Parent coordinates of the points of a cell; `nodes` are those of the grid.
+    pub fn of(&self, nodes: &'a [[f64; 2]], cell: usize) -> &'a [[f64; 2]] {
+        match self {
+            Sampling::Nodes => nodes,
+            Sampling::Cloud(cloud) => cloud.of(cell),
+        }
+    }
+
+    /// Cells with the same points to the bit: (class of each cell, a cell of each class).
+    pub fn classes(&self, nodes: &'a [[f64; 2]], cells: usize) -> (Vec<usize>, Vec<usize>) {
+        classes(cells, |cell| self.of(nodes, cell).iter().flatten().map(|x| x.to_bits()).collect::<Vec<u64>>())
+    }
+}
+
+/// Matrices of the points of all blocks.
+pub type PointPool = Pool<PointMatrices<f64>, PointMatrices<F8>>;
 
 /// Matrices of one class of clouds, in parent coordinates.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +63,7 @@ impl<C: Coefficient> PointMatrices<C> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
     /// Matrices by class.
-    pub pool: Pool<PointMatrices<f64>, PointMatrices<F8>>,
+    pub pool: PointPool,
     /// First entry of each block in `metric`, in points (length: blocks + 1).
     pub first: Vec<usize>,
     /// dxi_b/dX_a at the points, 1/m: [point of block][b][a].
@@ -54,25 +73,26 @@ pub struct Points {
 }
 
 impl Points {
-    /// Matrices and metric of all blocks.
+    /// The matrices of all blocks: what is worth storing.
     ///
     /// # Errors
     /// The first cell whose points cannot carry Q_N.
-    pub fn new(mesh: &Mesh, blocks: &Blocks, line: &Line, sampling: Sampling) -> Result<Self, Error> {
-        let cells = mesh.cells.len();
-        let nodes: Vec<[f64; 2]> = (0..line.m * line.m).map(|a| line.basis.node_2d(a)).collect();
-        let of = |cell: usize| match sampling {
-            Sampling::Nodes => &nodes[..],
-            Sampling::Cloud(cloud) => cloud.of(cell),
-        };
-        let key = |cell: usize| of(cell).iter().flatten().map(|x| x.to_bits()).collect::<Vec<u64>>();
-        let (class, examples) = classes(cells, key);
+    pub fn matrices(mesh: &Mesh, blocks: &Blocks, line: &Line, sampling: Sampling) -> Result<PointPool, Error> {
+        let nodes = line.nodes();
+        let of = |cell: usize| sampling.of(&nodes, cell);
+        let (class, examples) = sampling.classes(&nodes, mesh.cells.len());
         let build = |&cell: &usize| match sampling {
             Sampling::Nodes => Ok(at_nodes(line)),
             Sampling::Cloud(_) => at_points(line, of(cell), mesh.number(cell)),
         };
-        let all = examples.iter().map(build).collect::<Result<Vec<_>, Error>>()?;
-        let pool = Pool::new(&blocks.cells, &class, all, interleave);
+        let all = examples.par_iter().map(build).collect::<Result<Vec<_>, Error>>()?;
+        Ok(Pool::new(&blocks.cells, &class, all, interleave))
+    }
+
+    /// Adds the metric terms to the matrices.
+    pub fn new(mesh: &Mesh, blocks: &Blocks, line: &Line, sampling: Sampling, pool: PointPool) -> Self {
+        let nodes = line.nodes();
+        let of = |cell: usize| sampling.of(&nodes, cell);
         let mut out = Self { pool, first: vec![0], metric: vec![], parent: vec![] };
         for cells in &blocks.cells {
             let padded = cells.map(|cell| of(cell).len()).into_iter().max().unwrap_or(0);
@@ -81,7 +101,7 @@ impl Points {
             }
             out.first.push(out.parent.len() / 2);
         }
-        Ok(out)
+        out
     }
 
     fn push(&mut self, at: [([[f64; 2]; 4], [f64; 2]); LANES]) {

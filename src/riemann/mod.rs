@@ -35,15 +35,16 @@ pub trait Riemann {
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6];
 }
 
-/// The registry of fluxes: chosen per batch of blocks by one `match`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Flux {
-    /// Local Lax-Friedrichs.
-    Rusanov,
-    /// Linearised Godunov; alone it is unstable under compression (design: the curl instability).
-    Acoustic,
-    /// Acoustic with a penalty on the tangential jump of F.
-    AcousticCurl,
+names! {
+    /// The registry of fluxes: chosen per batch of blocks by one `match`.
+    Flux {
+        /// Local Lax-Friedrichs.
+        Rusanov = "rusanov",
+        /// Linearised Godunov; alone it is unstable under compression, where F loses its being a gradient.
+        Acoustic = "acoustic",
+        /// Acoustic with a penalty on the tangential jump of F.
+        AcousticCurl = "acoustic-curl",
+    }
 }
 
 /// Runs `$body` with `$flux` bound to the concrete flux.

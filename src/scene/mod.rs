@@ -24,7 +24,9 @@ use toml_edit::{Document, DocumentMut};
 use crate::error::{Error, Place, Result};
 pub use expression::{Expression, FUNCTIONS, Fault};
 pub use laws::{LAWS, Law, Parameter};
-pub use names::{Field, Flux, Method, Sweeps};
+pub use crate::observe::Field;
+pub use crate::riemann::Flux;
+pub use names::{Method, Sweeps};
 use origin::{Origin, Part};
 
 /// A whole scene.

@@ -152,7 +152,7 @@ fn points(table: &mut Reader, pattern: Option<Pattern>, path: Option<String>, de
         Some(Pattern::Gauss) => Layout::Gauss,
         Some(Pattern::Jitter) => Layout::Jitter {
             seed: table.integer("seed", 0..=usize::MAX)?.unwrap_or(1) as u64,
-            amount: table.number("amount", AMOUNT)?.unwrap_or(0.25),
+            amount: table.number("amount", AMOUNT)?.unwrap_or(crate::cloud::seed::Layout::JITTER),
         },
     };
     Ok(Cloud { layout, per_direction })

@@ -209,7 +209,7 @@ fn layouts_per_material() {
     let text = MINIMAL.replace("density = 7800", "density = 7800\nlayout = \"jitter\"\nseed = 7\nper_direction = 4");
     let scene = parse(&text, &[]).unwrap();
     assert_eq!(scene.cloud, Cloud { layout: Layout::Paper, per_direction: 3 });
-    assert_eq!(scene.materials[0].cloud, Cloud { layout: Layout::Jitter { seed: 7, amount: 0.25 }, per_direction: 4 });
+    assert_eq!(scene.materials[0].cloud, Cloud { layout: Layout::Jitter { seed: 7, amount: 0.2 }, per_direction: 4 });
     let file = parse(MINIMAL, &["cloud={layout=\"file\", path=\"points.vtu\"}"]).unwrap();
     assert_eq!(file.cloud_path(), Some(PathBuf::from("folder/points.vtu")));
     assert!(message(&text, &["cloud={layout=\"file\", path=\"p\"}"]).contains("the points come from the file"));

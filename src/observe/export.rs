@@ -1,0 +1,56 @@
+//! From a snapshot to what other programs show: the grid as high-order quadrilaterals, and the material points.
+
+use super::{Field, Solution};
+use crate::cloud::Cloud;
+use crate::io::grid::{self, HighOrderGrid, Kind, PointCloud, lagrange_quad_nodes};
+use crate::mesh::{Mesh, map};
+use crate::operators::Certificate;
+
+/// The grid with its fields at the Lagrange nodes of each cell, discontinuous between cells; stresses are the law's at
+/// the polynomial of F.
+pub fn grid(mesh: &Mesh, solution: &Solution, fields: &[Field]) -> HighOrderGrid {
+    let degree = solution.basis.len() - 1;
+    let mut out = HighOrderGrid::of_mesh(mesh, degree);
+    let weights: Vec<Vec<f64>> = lagrange_quad_nodes(degree).iter().map(|&xi| solution.basis.values_2d(xi)).collect();
+    let points = (0..mesh.cells.len()).flat_map(|cell| weights.iter().map(move |w| (cell, w)));
+    let points: Vec<_> = points.map(|(cell, w)| (cell, solution.combine(cell, w))).collect();
+    out.point_fields = fields.iter().map(|&field| values(field, solution, &points)).collect();
+    out
+}
+
+/// The material points as vertices, with their fields and the number of their cell.
+pub fn points(mesh: &Mesh, cloud: &Cloud, solution: &Solution, fields: &[Field]) -> PointCloud {
+    let at: Vec<_> =
+        (0..mesh.cells.len()).flat_map(|cell| cloud.of(cell).iter().map(move |&xi| (cell, solution.at(cell, xi)))).collect();
+    let place = |cell: usize| {
+        let corners = mesh.corners(cell);
+        cloud.of(cell).iter().map(move |&xi| map::position(&corners, xi))
+    };
+    let positions = (0..mesh.cells.len()).flat_map(place).map(|[x, y]| [x, y, 0.0]).collect();
+    let mut all: Vec<grid::Field> = fields.iter().map(|&field| values(field, solution, &at)).collect();
+    let cells = at.iter().map(|(cell, _)| mesh.number(*cell) as f64).collect();
+    all.push(grid::Field::new("cell", Kind::Scalar, cells));
+    PointCloud { points: positions, fields: all }
+}
+
+fn values(field: Field, solution: &Solution, points: &[(usize, super::Point)]) -> grid::Field {
+    let mut values = Vec::with_capacity(points.len() * field.kind().components());
+    points.iter().for_each(|(cell, point)| field.push_spatial(solution.law(*cell), point, &mut values));
+    grid::Field::new(field.name(), field.kind(), values)
+}
+
+/// What each cell can carry, as cell fields: the certificate, the number in the mesh file, and the law.
+pub fn cell_fields(mesh: &Mesh, certificates: &[Certificate], material: &[usize]) -> Vec<grid::Field> {
+    let scalar = |name: &str, value: &dyn Fn(usize) -> f64| {
+        grid::Field::new(name, Kind::Scalar, (0..mesh.cells.len()).map(value).collect())
+    };
+    vec![
+        scalar("cell", &|cell| mesh.number(cell) as f64),
+        scalar("material", &|cell| material[cell] as f64),
+        scalar("points", &|cell| certificates[cell].points as f64),
+        scalar("rank", &|cell| certificates[cell].rank as f64),
+        scalar("condition", &|cell| certificates[cell].condition),
+        scalar("face_lebesgue", &|cell| certificates[cell].lebesgue),
+        scalar("h", &|cell| certificates[cell].h),
+    ]
+}

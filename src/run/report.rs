@@ -1,0 +1,128 @@
+//! What a run cost and what became of energy and momentum: the table at its end and `summary.json`.
+
+use crate::state::{State, UNKNOWNS};
+use crate::step::phase::{NAMES, Phases};
+use crate::step::{Scheme, Survey, Totals, Work};
+use cpu_time::ProcessTime;
+use serde_json::{Map, Value, json};
+use std::time::Instant;
+
+/// Figures of a run.
+#[derive(Debug)]
+pub struct Report {
+    /// Steps done.
+    pub steps: usize,
+    /// Smallest and largest step, s.
+    pub dt: [f64; 2],
+    /// Seconds per phase, summed over threads.
+    pub phases: Phases,
+    /// Totals at the start.
+    pub first: Option<Totals>,
+    /// Totals at the end.
+    pub last: Option<Totals>,
+    /// min J over all points and steps.
+    pub min_j: f64,
+    /// Bytes of operators, state and work.
+    pub bytes: usize,
+    /// Seconds on the clock.
+    pub wall: f64,
+    /// Seconds on all processors.
+    pub cpu: f64,
+    /// DoF-updates: dofs x stages x steps.
+    pub updates: f64,
+    clock: (Instant, ProcessTime),
+}
+
+impl Default for Report {
+    fn default() -> Self {
+        Self {
+            steps: 0,
+            dt: [f64::INFINITY, 0.0],
+            phases: Phases::default(),
+            first: None,
+            last: None,
+            min_j: f64::INFINITY,
+            bytes: 0,
+            wall: 0.0,
+            cpu: 0.0,
+            updates: 0.0,
+            clock: (Instant::now(), ProcessTime::now()),
+        }
+    }
+}
+
+impl Report {
+    pub(super) fn start(&mut self, scheme: &Scheme, state: &State, work: &Work) {
+        self.clock = (Instant::now(), ProcessTime::now());
+        self.first = Some(scheme.totals(state));
+        self.bytes = scheme.operators.bytes() + work.bytes() + size_of_val(&state.u[..]);
+    }
+
+    pub(super) fn count(&mut self, dt: f64, survey: &Survey, work: &mut Work) {
+        self.steps += 1;
+        self.dt = [self.dt[0].min(dt), self.dt[1].max(dt)];
+        self.min_j = self.min_j.min(survey.min_j);
+        self.phases.add(&work.take_phases());
+    }
+
+    /// Stops the clocks and takes the totals; also for a run that stopped early.
+    pub fn finish(&mut self, scheme: &Scheme, state: &State) {
+        (self.wall, self.cpu) = (self.clock.0.elapsed().as_secs_f64(), self.clock.1.elapsed().as_secs_f64());
+        self.last = Some(scheme.totals(state));
+        self.updates = (dofs(scheme) * scheme.stages() * self.steps) as f64;
+    }
+
+    /// DoF-updates per CPU second.
+    pub fn rate(&self) -> f64 {
+        if self.cpu > 0.0 { self.updates / self.cpu } else { 0.0 }
+    }
+
+    /// Kinetic and strain energy at the end over the start; 1 for a body that starts at rest and unstrained.
+    pub fn energy_ratio(&self) -> f64 {
+        match (&self.first, &self.last) {
+            (Some(first), Some(last)) if first.energy() > 0.0 => last.energy() / first.energy(),
+            _ => 1.0,
+        }
+    }
+
+    /// The keys of `summary.json` that the run itself knows.
+    pub fn json(&self, scheme: &Scheme, state: &State) -> Map<String, Value> {
+        let phases: Map<String, Value> =
+            NAMES.iter().zip(self.phases.seconds).map(|(name, s)| ((*name).to_owned(), json!(s))).collect();
+        let last = self.last.unwrap_or_else(|| scheme.totals(state));
+        let pairs = [
+            ("cells", json!(scheme.operators.blocks.slot.len())),
+            ("dofs", json!(dofs(scheme))),
+            ("steps", json!(self.steps)),
+            ("dt_min", if self.steps > 0 { json!(self.dt[0]) } else { Value::Null }),
+            ("dt_max", json!(self.dt[1])),
+            ("end_time", json!(state.time)),
+            ("threads", json!(rayon::current_num_threads())),
+            ("cpu_seconds", json!(self.cpu)),
+            ("wall_seconds", json!(self.wall)),
+            ("phases", Value::Object(phases)),
+            ("dof_updates_per_second", json!(self.rate())),
+            ("peak_memory_mib", json!(peak_memory_mib())),
+            ("kinetic_energy", json!(last.kinetic)),
+            ("strain_energy", json!(last.strain)),
+            ("total_energy_ratio", json!(self.energy_ratio())),
+            ("momentum", json!(last.momentum)),
+            ("min_j", json!(self.min_j.min(last.min_j))),
+            ("max_curl_f", json!(last.max_curl)),
+        ];
+        pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+    }
+}
+
+/// 6 (N+1)^2 cells: the grid unknowns, for all methods.
+pub fn dofs(scheme: &Scheme) -> usize {
+    UNKNOWNS * scheme.operators.nodes() * scheme.operators.blocks.slot.len()
+}
+
+/// The largest resident memory of the process so far, MiB; 0 where the system does not tell.
+pub fn peak_memory_mib() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kib = line.and_then(|rest| rest.split_whitespace().next()).and_then(|number| number.parse::<f64>().ok());
+    kib.unwrap_or(0.0) / 1024.0
+}
