@@ -13,3 +13,5 @@ impl<'a> Locator<'a> {
         })
     }
 }
+/// stand-in
+pub fn from_points(_m: &Mesh, _p: &[[f64; 2]]) -> crate::error::Result<super::Cloud> { Ok(super::Cloud::default()) }

@@ -1,0 +1,282 @@
+//! Where names become types: from a scene to mesh, cloud, operators, scheme, initial state and observers.
+
+use super::{Boundary, Condition, Curl, Expression, Layout, Mesh as Source, Method, Output, Scene, Step, What, When};
+use crate::boundary::{self, Data};
+use crate::cloud::{self, Cloud, seed};
+use crate::error::{Error, Place, Result};
+use crate::io::{cloud_file, gmsh, mesh_file, store};
+use crate::lane::Kernel;
+use crate::material::{Law, NeoHookean};
+use crate::mesh::{self, Mesh};
+use crate::observe::{Field, Ledger, Line, Observer, Samples, Schedule, Snapshots};
+use crate::operators::{Needs, Operators, Sampling};
+use crate::run::{Folder, Settings};
+use crate::source::{self, BodyForce};
+use crate::state::{State, UNKNOWNS};
+use crate::step::{Method as Integration, Scheme, Tableau, cfl};
+use crate::tensor;
+use crate::{basis::TimeBasis, scene};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Steps between two rows of the ledger, where the scene does not say.
+const LEDGER_STEPS: usize = 10;
+
+/// Reads a mesh: `.h5` as written by `dgmpm mesh`, else Gmsh.
+///
+/// # Errors
+/// Bad input, with its place.
+pub fn read_mesh(path: &Path) -> Result<Mesh> {
+    if store::is_store(path) { mesh_file::read_mesh(path) } else { gmsh::read(path) }
+}
+
+/// An expression as data of boundary or source.
+fn data(expression: &Expression) -> Data {
+    let expression = expression.clone();
+    Arc::new(move |x, t| expression.eval(x, t))
+}
+
+fn pair(value: &[Expression; 2]) -> [Data; 2] {
+    value.each_ref().map(data)
+}
+
+impl Scene {
+    /// The mesh of the scene, its groups checked.
+    ///
+    /// # Errors
+    /// Bad input, with its place.
+    pub fn build_mesh(&self) -> Result<Mesh> {
+        let mesh = match &self.mesh {
+            Source::Rectangle { size, cells } => mesh::rectangle(*size, *cells)?,
+            Source::File(path) => read_mesh(&self.resolve(path))?,
+        };
+        self.check_groups(&mesh.groups, &mesh.edge_groups)?;
+        Ok(mesh)
+    }
+
+    /// The number of the `[[material]]` of each cell.
+    pub fn material_of_cells(&self, mesh: &Mesh) -> Vec<usize> {
+        let of_group = |group: &String| self.materials.iter().position(|m| m.group.as_ref().is_none_or(|g| g == group));
+        // `check_groups` has refused groups without a material.
+        let numbers: Vec<usize> = mesh.groups.iter().map(|group| of_group(group).unwrap_or(0)).collect();
+        mesh.cell_group.iter().map(|&group| numbers[group]).collect()
+    }
+
+    /// The material points.
+    ///
+    /// # Errors
+    /// A cloud file that does not fit the mesh.
+    pub fn build_cloud(&self, mesh: &Mesh) -> Result<Cloud> {
+        if let Layout::File(path) = &self.cloud.layout {
+            return read_cloud(&self.resolve(path), mesh);
+        }
+        let material = self.material_of_cells(mesh);
+        let choice = |cell: usize| {
+            let cloud = &self.materials[material[cell]].cloud;
+            (layout(&cloud.layout), cloud.per_direction)
+        };
+        Ok(seed::seed_by(mesh.cells.len(), choice))
+    }
+
+    /// What the method needs of the operators.
+    pub fn needs<'a>(&self, cloud: &'a Cloud) -> Needs<'a> {
+        let sampling = match self.scheme.method {
+            Method::AderDgmpm => Some(Sampling::Cloud(cloud)),
+            Method::AderDgfem => Some(Sampling::Nodes),
+            Method::RkDgfem => None,
+        };
+        // Constants have no curl.
+        let curl_free = self.scheme.degree > 0 && self.curl != Curl::Off;
+        Needs { degree: self.scheme.degree, sampling, curl_free }
+    }
+
+    /// The laws, in the order of the `[[material]]` tables.
+    pub fn build_laws(&self) -> Vec<Law> {
+        let build = |m: &scene::Material| {
+            let parameter = |name: &str| m.parameters.get(name).copied().unwrap_or(f64::NAN);
+            // The registry: every name in `LAWS` has its line here (`every_law_of_the_list_is_built` holds it).
+            match m.law.as_str() {
+                _neo_hookean => Law::NeoHookean(NeoHookean::new(parameter("young"), parameter("poisson"), m.density)),
+            }
+        };
+        self.materials.iter().map(build).collect()
+    }
+
+    /// The scheme.
+    pub fn build_scheme(&self, mesh: &Mesh, operators: Operators, kernel: Kernel) -> Scheme {
+        let (n, n_t) = (self.scheme.degree, self.scheme.time_degree);
+        let method = match self.scheme.method {
+            Method::RkDgfem => Integration::RungeKutta(Tableau::of_degree(n_t)),
+            Method::AderDgmpm | Method::AderDgfem => {
+                Integration::Ader { time: TimeBasis::new(n_t), sweeps: n.max(n_t) + 1 }
+            }
+        };
+        let condition = |group: &String| self.boundaries.iter().find(|b| b.group == *group).map(condition);
+        // `check_groups` has refused groups without a condition.
+        let free = || Box::new(boundary::Free) as Box<dyn boundary::Boundary>;
+        let boundaries = mesh.edge_groups.iter().map(|group| condition(group).unwrap_or_else(free)).collect();
+        let curl_rate = match self.curl {
+            Curl::Lcf { alpha } if n > 0 => Some(alpha * n as f64),
+            _ => None,
+        };
+        let sources = self.sources.iter().map(|s| self.source(s)).collect();
+        Scheme { operators, laws: self.build_laws(), method, flux: self.scheme.flux, boundaries, sources, curl_rate, kernel }
+    }
+
+    fn source(&self, source: &scene::Source) -> Box<dyn source::Source> {
+        let named = |m: &scene::Material| source.group.is_some() && m.group == source.group;
+        Box::new(BodyForce { value: pair(&source.value), material: self.materials.iter().position(named) })
+    }
+
+    /// The initial state: F and p at the grid nodes from the scene's expressions.
+    ///
+    /// # Errors
+    /// A value that is not finite, or J <= 0, with its place in the mesh.
+    pub fn initial_state(&self, mesh: &Mesh, scheme: &Scheme) -> Result<State> {
+        let (basis, n) = (&scheme.operators.line.basis, scheme.operators.nodes());
+        let components = if self.wants_displacement() { UNKNOWNS + 2 } else { UNKNOWNS };
+        let mut cells = vec![0.0; mesh.cells.len() * components * n];
+        let material = self.material_of_cells(mesh);
+        for (cell, values) in cells.chunks_mut(components * n).enumerate() {
+            let density = scheme.laws[material[cell]].density();
+            for a in 0..n {
+                let x = mesh::map::position(&mesh.corners(cell), basis.node_2d(a));
+                let f = self.initial.deformation.each_ref().map(|e| e.eval(x, 0.0));
+                let v = self.initial.velocity.each_ref().map(|e| e.eval(x, 0.0));
+                self.check_initial(f, v, x, mesh.number(cell))?;
+                let u = [f[0], f[1], f[2], f[3], density * v[0], density * v[1]];
+                u.into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
+            }
+        }
+        Ok(State::pack(&scheme.operators.blocks, n, components, &cells))
+    }
+
+    fn check_initial(&self, f: [f64; 4], v: [f64; 2], x: [f64; 2], cell: u64) -> Result<()> {
+        let at = format!("at ({}, {}) in cell {cell}", x[0], x[1]);
+        if v.iter().any(|v| !v.is_finite()) {
+            let what = format!("the initial velocity {at} is ({}, {})", v[0], v[1]);
+            return Err(self.error("initial.velocity", what, "give expressions that are finite all over the body"));
+        }
+        let j = tensor::det(f);
+        if f.iter().any(|f| !f.is_finite()) || j <= 0.0 {
+            let what = format!("the initial deformation gradient {at} has J = {j}");
+            return Err(self.error("initial.deformation", what, "give expressions with F11 F22 - F12 F21 > 0"));
+        }
+        Ok(())
+    }
+
+    /// Whether an output asks for the displacement.
+    pub fn wants_displacement(&self) -> bool {
+        self.outputs.iter().any(|output| output.fields.contains(&Field::Displacement))
+    }
+
+    /// dt c / h and the end.
+    ///
+    /// # Errors
+    /// A step beyond the stability limit.
+    pub fn settings(&self, integration: &Integration) -> Result<Settings> {
+        let n = self.scheme.degree;
+        let limit = cfl::limit(integration, n);
+        let (key, safety) = match self.scheme.step {
+            Step::Safety(safety) => ("scheme.safety", safety),
+            Step::Cfl(cfl) => ("scheme.cfl", cfl::safety_of_cfl(cfl, integration, n)),
+        };
+        if safety > 1.0 {
+            let allowed = limit * (2 * n + 1) as f64;
+            return Err(self.error(
+                key,
+                format!("the step is {safety:.2} of the stability limit in 2D (dt c / h = {limit:.4} for degree {n}) and blows up"),
+                format!("give scheme.safety up to 1 (0.9 is the default), or scheme.cfl up to {allowed:.3}"),
+            ));
+        }
+        Ok(Settings { end: self.end, courant: safety * limit })
+    }
+
+    /// The observers that the scene asks for, writing into a run folder; and a ledger in any case.
+    ///
+    /// # Errors
+    /// A line that leaves the mesh; files that cannot be made.
+    pub fn observers(&self, mesh: &Mesh, folder: &Folder) -> Result<Vec<Box<dyn Observer>>> {
+        let material = self.material_of_cells(mesh);
+        let mut out: Vec<Box<dyn Observer>> = Vec::new();
+        for output in &self.outputs {
+            let schedule = schedule(output);
+            out.push(match output.what {
+                What::Fields => Box::new(Snapshots::new(&folder.snapshots(), schedule)),
+                What::Ledger => Box::new(Ledger::create(&folder.ledger(), schedule)?),
+                What::Line { from, to, samples } => {
+                    let samples = Samples { ends: [from, to], count: samples, fields: output.fields.clone() };
+                    Box::new(Line::create(&folder.line(&output.name), mesh, &material, &samples, schedule)?)
+                }
+            });
+        }
+        if !self.outputs.iter().any(|output| output.what == What::Ledger) {
+            let schedule = Schedule::new(crate::observe::When::EverySteps(LEDGER_STEPS), false);
+            out.push(Box::new(Ledger::create(&folder.ledger(), schedule)?));
+        }
+        Ok(out)
+    }
+
+    /// The fields that an export shows: those of the first `fields` output, or all that the state has.
+    pub fn export_fields(&self) -> Vec<Field> {
+        let asked = self.outputs.iter().find(|output| output.what == What::Fields).map(|output| output.fields.clone());
+        let all = || Field::NAMES.iter().map(|(_, field)| *field).filter(|f| *f != Field::Displacement).collect();
+        asked.unwrap_or_else(all)
+    }
+}
+
+fn schedule(output: &Output) -> Schedule {
+    let when = match &output.when {
+        When::At(times) => crate::observe::When::At(times.clone()),
+        When::Every(interval) => crate::observe::When::Every(*interval),
+        When::EverySteps(steps) => crate::observe::When::EverySteps(*steps),
+    };
+    Schedule::new(when, output.exact_times)
+}
+
+/// The registry of boundary conditions.
+fn condition(boundary: &Boundary) -> Box<dyn boundary::Boundary> {
+    let zero = || data(&Expression::number(0.0));
+    match &boundary.condition {
+        Condition::Free => Box::new(boundary::Free),
+        Condition::Symmetry => Box::new(boundary::Wall { speed: None }),
+        Condition::Wall { speed } if speed.constant() == Some(0.0) => Box::new(boundary::Wall { speed: None }),
+        Condition::Wall { speed } => Box::new(boundary::Wall { speed: Some(data(speed)) }),
+        Condition::Clamped => Box::new(boundary::Velocity { value: [zero(), zero()] }),
+        Condition::Velocity(value) => Box::new(boundary::Velocity { value: pair(value) }),
+        Condition::Traction(value) => Box::new(boundary::Traction { value: pair(value) }),
+        Condition::Absorbing => Box::new(boundary::Absorbing),
+    }
+}
+
+/// A lattice of the scene as that of the seeder; files are read elsewhere.
+fn layout(layout: &Layout) -> seed::Layout {
+    match *layout {
+        Layout::Paper => seed::Layout::Paper,
+        Layout::Gauss => seed::Layout::Gauss,
+        Layout::Jitter { seed, amount } => seed::Layout::Jitter { seed, amount },
+        Layout::Midpoints | Layout::File(_) => seed::Layout::Midpoints,
+    }
+}
+
+/// Reads a cloud: `.h5` as written by `dgmpm seed`, else rows x, y of a CSV file.
+///
+/// # Errors
+/// Points outside of the mesh, with their numbers; rows that are no pair of numbers.
+pub fn read_cloud(path: &Path, mesh: &Mesh) -> Result<Cloud> {
+    if store::is_store(path) {
+        return cloud_file::read_cloud_of(path, mesh);
+    }
+    let text = std::fs::read_to_string(path)
+        .map_err(|why| Error::at(Place::file(path), format!("cannot read the cloud: {why}"), "give a file of points x, y"))?;
+    let mut points = Vec::new();
+    for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+        let numbers: Vec<f64> = line.split([',', ' ', '\t']).filter(|t| !t.is_empty()).map_while(|t| t.parse().ok()).collect();
+        match numbers[..] {
+            [x, y, ..] if x.is_finite() && y.is_finite() => points.push([x, y]),
+            _ if number == 0 => {} // names of the columns
+            _ => return Err(Error::at(Place::line(path, number + 1, 1), "this is not a point", "give x, y in m")),
+        }
+    }
+    cloud::locate::from_points(mesh, &points)
+}
