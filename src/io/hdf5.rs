@@ -16,8 +16,8 @@ const CHUNK_BYTES: usize = 256 * 1024;
 const SMALL_BYTES: usize = 8 * 1024;
 /// Deflate packs at most 1032 to 1: a dataset that claims more bytes than this times the file is not genuine.
 const LARGEST_RATIO: u64 = 1100;
-/// Fast deflate after a byte shuffle: on smooth fields levels above 4 save no more than 2 %.
-const DEFLATE_LEVEL: u8 = 4;
+/// After a byte shuffle, levels 1, 4, 9 pack a smooth S2 state to .467, .463, .457 of its size at 70, 40, 6 MB/s.
+const DEFLATE_LEVEL: u8 = 1;
 
 /// An open file for reading, with what is needed for its messages.
 pub struct Reader {
