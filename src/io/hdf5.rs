@@ -7,6 +7,7 @@ use hdf5_metno::H5Type;
 use hdf5_metno::types::{FloatSize, TypeDescriptor, VarLenAscii, VarLenUnicode};
 
 use super::pending::Pending;
+use super::seal::{self, Seal};
 use crate::error::{Error, Place, Result};
 
 /// Bytes per chunk: large enough for the disk, small enough for HDF5's cache of 1 MiB.
@@ -15,8 +16,8 @@ const CHUNK_BYTES: usize = 256 * 1024;
 const SMALL_BYTES: usize = 8 * 1024;
 /// Deflate packs at most 1032 to 1: a dataset that claims more bytes than this times the file is not genuine.
 const LARGEST_RATIO: u64 = 1100;
-/// Fast deflate after a byte shuffle: on smooth fields levels above 4 save no more than 2 %.
-const DEFLATE_LEVEL: u8 = 4;
+/// After a byte shuffle, levels 1, 4, 9 pack a smooth S2 state to .467, .463, .457 of its size at 70, 40, 6 MB/s.
+const DEFLATE_LEVEL: u8 = 1;
 
 /// An open file for reading, with what is needed for its messages.
 pub struct Reader {
@@ -41,12 +42,33 @@ pub enum Values {
 
 /// Creates a file by `fill`, whole or not at all.
 pub fn create(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<()> {
+    fill_pending(path, fill)?.commit()
+}
+
+/// Creates a file by `fill`, whole or not at all, with a seal by which damage is found.
+pub fn create_sealed(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<()> {
+    let pending = fill_pending(path, fill)?;
+    seal::put(pending.path()).map_err(|e| Error::output(path, e))?;
+    pending.commit()
+}
+
+fn fill_pending(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<Pending> {
     let pending = Pending::new(path)?;
-    let file = open_new(pending.path()).map_err(|e| Error::output(path, e))?;
+    let file = open_new(pending.path()).map_err(|e| Error::output(path, reason(&e)))?;
     let filled = fill(&file).and_then(|()| file.flush());
     let closed = file.close();
-    filled.and(closed).map_err(|e| Error::output(path, e))?;
-    pending.commit()
+    filled.and(closed).map_err(|e| Error::output(path, reason(&e)))?;
+    Ok(pending)
+}
+
+/// What went wrong, on one line: the system's words where HDF5 quotes them, else the first line without times and
+/// addresses.
+pub fn reason(error: &h5::Error) -> String {
+    let text = error.to_string();
+    let quoted =
+        text.split_once("error message = '").and_then(|(_, rest)| rest.split_once('\'')).map(|(words, _)| words);
+    let first = || text.split([':', '\n']).map(str::trim).take_while(|part| !part.starts_with("time = "));
+    quoted.map_or_else(|| first().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(": "), str::to_owned)
 }
 
 /// Opens a new file for writing, in the format that every HDF5 since 1.8 reads.
@@ -112,9 +134,15 @@ impl Reader {
     pub fn open(path: &Path, remedy: &str) -> Result<Self> {
         let place = Place::file(path);
         let fail = |what: String| Error::at(place.clone(), what, remedy);
-        let bytes = std::fs::metadata(path).map_err(|e| fail(format!("cannot be read: {e}")))?.len();
-        let file = h5::File::open(path).map_err(|e| fail(format!("not a whole HDF5 file: {e}")))?;
-        Ok(Self { file, place, bytes, remedy: remedy.to_owned() })
+        let about = std::fs::metadata(path).map_err(|e| fail(format!("cannot be read: {e}")))?;
+        if about.is_dir() {
+            return Err(fail("this is a folder, not a file".to_owned()));
+        }
+        if seal::check(path).map_err(|e| fail(format!("cannot be read: {e}")))? == Seal::Broken {
+            return Err(fail("the file is damaged: its bytes are not those that were written".to_owned()));
+        }
+        let file = h5::File::open(path).map_err(|e| fail(format!("not a whole HDF5 file: {}", reason(&e))))?;
+        Ok(Self { file, place, bytes: about.len(), remedy: remedy.to_owned() })
     }
 
     /// The error "this file is not as it should be".
@@ -124,22 +152,23 @@ impl Reader {
 
     /// Names of all datasets of the root group.
     pub fn names(&self) -> Result<Vec<String>> {
-        self.file.member_names().map_err(|e| self.error(format!("its contents cannot be listed: {e}")))
+        self.file.member_names().map_err(|e| self.error(format!("its contents cannot be listed: {}", reason(&e))))
     }
 
     /// Names of all attributes of the root group.
     pub fn attribute_names(&self) -> Result<Vec<String>> {
-        self.file.attr_names().map_err(|e| self.error(format!("its attributes cannot be listed: {e}")))
+        self.file.attr_names().map_err(|e| self.error(format!("its attributes cannot be listed: {}", reason(&e))))
     }
 
     /// A text attribute of the root group.
     pub fn attribute(&self, name: &str) -> Result<String> {
-        read_attribute(&self.file, name).map_err(|e| self.error(format!("attribute `{name}` cannot be read: {e}")))
+        read_attribute(&self.file, name)
+            .map_err(|e| self.error(format!("attribute `{name}` cannot be read: {}", reason(&e))))
     }
 
     /// Shape and values of a dataset.
     pub fn get(&self, name: &str) -> Result<(Vec<usize>, Values)> {
-        let fail = |e: h5::Error| self.error(format!("array `{name}` cannot be read: {e}"));
+        let fail = |e: h5::Error| self.error(format!("array `{name}` cannot be read: {}", reason(&e)));
         let dataset = self.file.dataset(name).map_err(fail)?;
         let shape = dataset.get_shape().map_err(fail)?;
         let kind = dataset.dtype().and_then(|t| t.to_descriptor()).map_err(fail)?;

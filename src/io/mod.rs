@@ -4,7 +4,8 @@
 //! ([`cloud_file`]) and the state at a time ([`snapshot`]). For other programs there is an output model ([`grid`]) that
 //! knows nothing of a solver, and one writer per format: [`vtu`], [`pvd`], [`xdmf`], [`csv`].
 //!
-//! A file appears under its name only when it is whole ([`pending`]); what is read is checked before it is used.
+//! A file appears under its name only when it is whole ([`pending`]); what is read is checked before it is used, by a
+//! checksum ([`seal`]) even before the HDF5 library sees it.
 
 pub mod cloud_file;
 pub mod csv;
@@ -17,6 +18,7 @@ pub mod mesh_file;
 pub mod operators_file;
 pub mod pending;
 pub mod pvd;
+pub mod seal;
 pub mod snapshot;
 pub mod store;
 pub mod vtu;

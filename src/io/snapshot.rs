@@ -72,7 +72,7 @@ impl Snapshot {
         };
         let (step, degree) = (one("step")?, one("degree")?);
         if degree > 64 {
-            return Err(store.error(format!("degree {degree} is not of this world")));
+            return Err(store.error(format!("the degree {degree} is not possible")));
         }
         let side = degree + 1;
         Ok(Self {

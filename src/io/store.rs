@@ -1,13 +1,9 @@
-//! Named arrays and text attributes in one HDF5 file, with the name and version of the format and a fingerprint of the
-//! content. Mesh, cloud and snapshot files are stores, and so may anything else be that has to outlive a process.
-//!
-//! The fingerprint (attribute `content`) covers every array and attribute: a file that was damaged is refused by one
-//! message. A file without it, written by another program, is read as it is.
+//! Named arrays and text attributes in one sealed HDF5 file, with the name and version of the format. Mesh, cloud and
+//! snapshot files are stores, and so may anything else be that has to outlive a process.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::hash::Digest;
 use super::hdf5::{self, Reader, Values};
 use crate::error::{Error, Result};
 
@@ -48,7 +44,6 @@ pub struct Store {
 
 const FORMAT: &str = "format";
 const VERSION: &str = "version";
-const CONTENT: &str = "content";
 
 /// Writes a store: text attributes, and arrays (name, shape, values in row-major order). Whole or not at all.
 pub fn write_arrays(
@@ -60,9 +55,7 @@ pub fn write_arrays(
     let mut all: BTreeMap<String, String> = attributes.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
     all.insert(FORMAT.to_owned(), format.name.to_owned());
     all.insert(VERSION.to_owned(), format.version.to_string());
-    let content = fingerprint(&all, arrays.iter().map(|(name, shape, array)| (*name, shape.as_slice(), *array)));
-    all.insert(CONTENT.to_owned(), content);
-    hdf5::create(path, |file| {
+    hdf5::create_sealed(path, |file| {
         for (name, text) in &all {
             hdf5::put_attribute(file, name, text)?;
         }
@@ -79,32 +72,8 @@ pub fn write_arrays(
     })
 }
 
-/// The fingerprint of everything in a store but itself; the order of the arrays does not matter.
-fn fingerprint<'a>(
-    attributes: &BTreeMap<String, String>,
-    arrays: impl Iterator<Item = (&'a str, &'a [usize], ArrayRef<'a>)>,
-) -> String {
-    let mut digest = Digest::new();
-    for (name, text) in attributes {
-        digest.text(name).text(text);
-    }
-    let mut arrays: Vec<_> = arrays.collect();
-    arrays.sort_by_key(|(name, _, _)| *name);
-    for (name, shape, array) in arrays {
-        digest.text(name).counts(shape.iter().map(|&n| n as u64));
-        match array {
-            ArrayRef::F64(values) => digest.text("f64").reals(values.iter().copied()),
-            ArrayRef::I64(values) => digest.text("i64").counts(values.iter().map(|&v| v as u64)),
-            ArrayRef::U64(values) => digest.text("u64").counts(values.iter().copied()),
-            ArrayRef::Index(values) => digest.text("i64").counts(values.iter().map(|&v| v as u64)),
-            ArrayRef::Text(values) => values.iter().fold(digest.text("text"), |digest, text| digest.text(text)),
-        };
-    }
-    digest.finish()
-}
-
 impl Store {
-    /// Reads a whole file and checks its format, version and fingerprint.
+    /// Reads a whole file and checks its seal, format and version.
     pub fn read(path: &Path, format: Format) -> Result<Self> {
         let reader = Reader::open(path, format.remedy)?;
         let mut attributes = BTreeMap::new();
@@ -116,29 +85,7 @@ impl Store {
         for name in reader.names()? {
             arrays.insert(name.clone(), reader.get(&name)?);
         }
-        let store = Self { place: crate::error::Place::file(path), remedy: format.remedy, attributes, arrays };
-        store.check_content()?;
-        Ok(store)
-    }
-
-    fn check_content(&self) -> Result<()> {
-        let Some(content) = self.attributes.get(CONTENT) else { return Ok(()) };
-        let mut attributes = self.attributes.clone();
-        attributes.remove(CONTENT);
-        let arrays = self.arrays.iter().map(|(name, (shape, values))| {
-            let values = match values {
-                Values::F64(v) => ArrayRef::F64(v),
-                Values::I64(v) => ArrayRef::I64(v),
-                Values::U64(v) => ArrayRef::U64(v),
-                Values::Text(v) => ArrayRef::Text(v),
-            };
-            (name.as_str(), shape.as_slice(), values)
-        });
-        if fingerprint(&attributes, arrays) == *content {
-            return Ok(());
-        }
-        Err(self
-            .error("the values are not those that were written (damaged, or changed by hand: then delete `content`)"))
+        Ok(Self { place: crate::error::Place::file(path), remedy: format.remedy, attributes, arrays })
     }
 
     /// The error "this file is not as it should be".

@@ -42,14 +42,14 @@ impl Series {
         grid.check()?;
         let h5 = companion(path)?;
         let pending = Pending::new(&h5)?;
-        let file = hdf5::open_new(pending.path()).map_err(|e| Error::output(&h5, e))?;
+        let file = hdf5::open_new(pending.path()).map_err(|e| Error::output(&h5, hdf5::reason(&e)))?;
         let n = grid.degree.max(1);
         let (cells, points, split) = (grid.cells(), grid.points.len(), n * n);
         let topology = sub_quads(n, cells);
         let geometry: Vec<f64> = grid.points.iter().flat_map(|p| [p[0], p[1]]).collect();
         hdf5::put(&file, "mesh/topology", &[cells * split, 4], &topology)
             .and_then(|()| hdf5::put(&file, "mesh/geometry", &[points, 2], &geometry))
-            .map_err(|e| Error::output(&h5, e))?;
+            .map_err(|e| Error::output(&h5, hdf5::reason(&e)))?;
         Ok(Self { path: path.to_owned(), h5, pending, file, cells, points, split, steps: Vec::new() })
     }
 
@@ -75,14 +75,15 @@ impl Series {
         let rows = values.len() / field.kind.components();
         let name = field.name.clone();
         let written = Stored { name, kind: field.kind, center, dataset: dataset(number, center, field), rows };
-        hdf5::put(&self.file, &written.dataset, &written.shape(), values).map_err(|e| Error::output(&self.h5, e))?;
+        hdf5::put(&self.file, &written.dataset, &written.shape(), values)
+            .map_err(|e| Error::output(&self.h5, hdf5::reason(&e)))?;
         Ok(written)
     }
 
     /// Gives both files their names.
     pub fn finish(self) -> Result<()> {
         let Self { path, h5, pending, file, cells, points, split, steps } = self;
-        file.flush().and_then(|()| file.close()).map_err(|e| Error::output(&h5, e))?;
+        file.flush().and_then(|()| file.close()).map_err(|e| Error::output(&h5, hdf5::reason(&e)))?;
         pending.commit()?;
         let file = file_name(&h5);
         write_document(&path, |xml| {
