@@ -60,13 +60,13 @@ class Grid:
         return np.stack([x[:, 0, 0], x[:, 0, -1], x[:, -1, -1], x[:, -1, 0]], axis=1)
 
     def evaluate(self, field, xi):
-        """A field, by name or as an array [cell, j, i, component], at parent points xi[point, 2]: [cell, point, component]."""
+        """A field (its name, or [cell, j, i, component]) at parent points xi[point, 2]: [cell, point, component]."""
         values = self.fields[field] if isinstance(field, str) else field
         lx, ly = lagrange_values(self.degree, xi[:, 0]), lagrange_values(self.degree, xi[:, 1])
         return np.einsum("pi,pj,cjik->cpk", lx, ly, values, optimize=True)
 
     def map(self, xi):
-        """Reference coordinates and det dX/dxi of the bilinear cells at parent points: [cell, point, 2], [cell, point]."""
+        """X [cell, point, 2] and det dX/dxi [cell, point] of the bilinear cells at parent points xi[point, 2]."""
         x, y = xi[:, 0], xi[:, 1]
         shape = np.stack([(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y], axis=1)
         d_x = np.stack([y - 1, 1 - y, y, -y], axis=1)
@@ -82,7 +82,9 @@ def read_grid(path):
     data = pyvista.read(path)
     kinds = set(np.unique(data.celltypes))
     if not kinds <= {VTK_QUAD, VTK_LAGRANGE_QUADRILATERAL} or len(kinds) != 1:
-        raise ValueError(f"{path}: expected Lagrange quadrilaterals (70) of one degree, found VTK cell types {sorted(kinds)}")
+        raise ValueError(
+            f"{path}: expected Lagrange quadrilaterals (70) of one degree, found VTK cell types {sorted(kinds)}"
+        )
     sizes = np.diff(data.cell_offsets)
     degree = round(np.sqrt(sizes[0])) - 1
     if np.any(sizes != (degree + 1) ** 2):
@@ -101,7 +103,10 @@ def read_points(path):
     import pyvista
 
     data = pyvista.read(path)
-    return {"points": np.asarray(data.points)[:, :2], **{name: np.asarray(data.point_data[name]) for name in data.point_data}}
+    return {
+        "points": np.asarray(data.points)[:, :2],
+        **{name: np.asarray(data.point_data[name]) for name in data.point_data},
+    }
 
 
 def series(pvd):
@@ -140,7 +145,7 @@ VECTOR_COMPONENTS = {"1": 0, "2": 1, "3": 2}
 
 
 def component(values, name, field=""):
-    """One component of a field by its name: "11".."33" of a tensor (9), "1".."3" or "norm" of a vector, "" of a scalar."""
+    """A component by its name: "11", "12", .. of a tensor, "1", .. or "norm" of a vector, "" of a scalar."""
     if name == "norm":
         return np.linalg.norm(values, axis=-1)
     table = {9: TENSOR_COMPONENTS, 3: VECTOR_COMPONENTS, 1: {"": 0}}[values.shape[-1]]

@@ -4,7 +4,8 @@ Figures 3 and 4: maps of sigma11 for RK-DGFEM, ADER-DGFEM and ADER-DGMPM at S1T1
 Figure 5: sigma11 and V1 along the bottom line, with a finite-volume reference behind.
 Method and degrees are read from each run's summary.json.
 
-usage: figures.py RUN... --out FOLDER [--reference impact_bottom_0.00177.csv] [--time 1.77e-3] [--configuration deformed]
+usage: figures.py RUN... --out FOLDER [--reference impact_bottom_0.00177.csv] [--time 1.77e-3]
+                  [--configuration deformed|reference]
 """
 
 import argparse
@@ -61,25 +62,42 @@ def draw_maps(runs, degree, time, deformed, out):
     maps = {method: sampled_map(folder, time, deformed) for method, folder in runs.items()}
     # The scale leaves out the last half percent, which single corners would stretch it by.
     limit = max(np.percentile(abs(values), 99.5) for *_, values in maps.values())
-    figure, axes = plt.subplots(1, len(maps), figsize=(3.4 * len(maps) + 0.8, 3.4), sharey=True, squeeze=False, layout="constrained")
-    for ax, (method, (t, x, y, triangles, values)) in zip(axes[0], maps.items()):
-        image = ax.tripcolor(x, y, triangles, values, shading="gouraud", cmap=PALETTE, vmin=-limit, vmax=limit, rasterized=True)
-        ax.set(title=f"{METHODS[method][0]}, S{degree}T{degree}", xlabel="$x_1$ (m)" if deformed else "$X_1$ (m)", aspect="equal")
+    figure, axes = plt.subplots(
+        1, len(maps), figsize=(3.4 * len(maps) + 0.8, 3.4), sharey=True, squeeze=False, layout="constrained"
+    )
+    for ax, (method, (_, x, y, triangles, values)) in zip(axes[0], maps.items()):
+        image = ax.tripcolor(
+            x, y, triangles, values, shading="gouraud", cmap=PALETTE, vmin=-limit, vmax=limit, rasterized=True
+        )
+        ax.set(
+            title=f"{METHODS[method][0]}, S{degree}T{degree}",
+            xlabel="$x_1$ (m)" if deformed else "$X_1$ (m)",
+            aspect="equal",
+        )
     axes[0, 0].set_ylabel("$x_2$ (m)" if deformed else "$X_2$ (m)")
     figure.colorbar(image, ax=axes, label=r"$\sigma_{11}$ (GPa)", extend="both")
-    figure.suptitle(f"t = {t:.3e} s", fontsize=10)
+    shown = next(iter(maps.values()))[0]
+    figure.suptitle(f"t = {shown:.3e} s", fontsize=10)
     return save(figure, out / MAP_FIGURES.get(degree, f"map_S{degree}T{degree}"))
 
 
 def draw_lines(runs, time, reference, out):
     """sigma11 and V1 along the bottom line: a row per quantity, a column per degree."""
-    figure, axes = plt.subplots(2, len(runs), figsize=(4.6 * len(runs), 5.6), sharex=True, sharey="row", squeeze=False, layout="constrained")
+    figure, axes = plt.subplots(
+        2, len(runs), figsize=(4.6 * len(runs), 5.6), sharex=True, sharey="row", squeeze=False, layout="constrained"
+    )
     rows = (("cauchy_stress_11", "sigma11", 1e9, r"$\sigma_{11}$ (GPa)"), ("velocity_1", "V1", 1.0, "$V_1$ (m/s)"))
     for column, (degree, folders) in enumerate(runs.items()):
         for row, (name, reference_name, unit, label) in enumerate(rows):
             ax = axes[row, column]
             if reference:
-                ax.plot(reference["X1"], reference[reference_name] / unit, color="0.65", lw=0.8, label="finite volumes, 450 x 450")
+                ax.plot(
+                    reference["X1"],
+                    reference[reference_name] / unit,
+                    color="0.65",
+                    lw=0.8,
+                    label="finite volumes, 450 x 450",
+                )
             for method, folder in folders.items():
                 line = exported.read_line(folder / "lines" / "bottom.csv", time)
                 title, colour, dashes = METHODS[method]

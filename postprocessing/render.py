@@ -1,6 +1,7 @@
 """A picture of any exported run without ParaView: one component of one field, on the deformed shape.
 
-usage: render.py RUN [--field cauchy_stress] [--component 11] [--time T] [--warp 1] [--points] [--edges] [--out FILE.png]
+usage: render.py RUN [--field cauchy_stress] [--component 11] [--time T] [--warp 1]
+                 [--points] [--edges] [--out FILE.png]
 """
 
 import argparse

@@ -19,7 +19,7 @@ fi
 
 stamp=.venv/requirements.installed
 if ! cmp -s tools/requirements.txt "$stamp"; then
-    echo "python packages: into .venv (about 500 MB, once)"
+    echo "python packages: into .venv (1.1 GB, once)"
     .venv/bin/python -c '' 2>/dev/null || "$python" -m venv --clear .venv
     .venv/bin/python -m pip install --quiet --disable-pip-version-check -r tools/requirements.txt
     cp tools/requirements.txt "$stamp"

@@ -5,9 +5,9 @@ import sys
 
 import numpy as np
 import pytest
-from conftest import ROOT, displacement, velocity
 
 import exported
+from conftest import ROOT, displacement, velocity
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 4])
@@ -49,7 +49,9 @@ def test_an_unknown_component_names_the_known_ones():
 
 
 def script(*arguments):
-    return subprocess.run([sys.executable, *map(str, arguments)], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    return subprocess.run(
+        [sys.executable, *map(str, arguments)], cwd=ROOT, check=True, capture_output=True, text=True
+    ).stdout
 
 
 def test_figures_are_drawn(run_factory, tmp_path):
@@ -58,13 +60,24 @@ def test_figures_are_drawn(run_factory, tmp_path):
         for degree in (1, 2)
         for method in ("ader-dgmpm", "rk-dgfem", "ader-dgfem")
     ]
-    script("postprocessing/figures.py", *runs, "--out", tmp_path / "figures", "--reference", "tests/data/impact_bottom_0.00177.csv")
+    script(
+        "postprocessing/figures.py",
+        *runs,
+        "--out",
+        tmp_path / "figures",
+        "--reference",
+        "tests/data/impact_bottom_0.00177.csv",
+    )
     names = ["figure3_map_S1T1", "figure4_map_S2T2", "figure5_bottom_line"]
-    assert sorted(p.name for p in (tmp_path / "figures").iterdir()) == [f"{n}.{e}" for n in names for e in ("png", "svg")]
+    assert sorted(p.name for p in (tmp_path / "figures").iterdir()) == [
+        f"{n}.{e}" for n in names for e in ("png", "svg")
+    ]
 
 
 def test_any_field_is_rendered(run_factory, tmp_path):
     run = run_factory(distortion=0.2)
     for field in ("cauchy_stress", "velocity", "jacobian"):
-        script("postprocessing/render.py", run, "--field", field, "--points", "--edges", "--out", tmp_path / f"{field}.png")
+        script(
+            "postprocessing/render.py", run, "--field", field, "--points", "--edges", "--out", tmp_path / f"{field}.png"
+        )
         assert (tmp_path / f"{field}.png").stat().st_size > 10_000

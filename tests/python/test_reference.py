@@ -8,13 +8,13 @@ import sys
 import meshio
 import numpy as np
 import pytest
-from conftest import ROOT, displacement, square_corners, velocity
 
 import compare
 import compare_box
 import exported
 import impact
 import skfem_impact
+from conftest import ROOT, displacement, square_corners, velocity
 
 REFERENCE = ROOT / "tests" / "reference"
 BLOCKS = np.load(ROOT / "tests" / "data" / "impact_blocks30.npz")
@@ -42,7 +42,9 @@ def exact_blocks(n=12):
 
 @pytest.mark.parametrize("cells, distortion, limit", [(30, 0.0, 1e-12), (60, 0.0, 1e-12), (31, 0.2, 1e-3)])
 def test_block_averages_of_an_exported_grid(run_factory, cells, distortion, limit):
-    blocks = compare.block_averages(exported.read_grid(exported.step_at(run_factory(cells=cells, distortion=distortion))[1]))
+    blocks = compare.block_averages(
+        exported.read_grid(exported.step_at(run_factory(cells=cells, distortion=distortion))[1])
+    )
     for name, exact in exact_blocks().items():
         assert impact.relative_l1(blocks[name], exact) < limit, name
 
@@ -75,7 +77,9 @@ def test_scikit_fem_converges_to_the_smooth_box():
         basis, u, v = skfem_impact.solve(impact.BOX, cells)
         x = np.moveaxis(np.asarray(basis.global_coordinates()), 0, -1)
         velocity_there = np.moveaxis(np.asarray(basis.interpolate(v)), 0, -1)
-        errors.append(compare_box.relative_error(x, basis.dx, skfem_impact.deformation(basis.interpolate(u)), velocity_there))
+        errors.append(
+            compare_box.relative_error(x, basis.dx, skfem_impact.deformation(basis.interpolate(u)), velocity_there)
+        )
     assert errors[1] < 5e-3 and errors[0] / errors[1] > 3, errors  # F is of order 2 in displacement elements
 
 

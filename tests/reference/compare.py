@@ -55,7 +55,10 @@ def block_averages(grid, fine=16, size=3.0, blocks=30):
         v1 = part.evaluate("velocity", xi)[..., 0]
         samples.append((x.reshape(-1, 2), (area * w).ravel(), impact.cauchy(f)[..., 0, 0].ravel(), v1.ravel()))
     x, area, s11, v1 = (np.concatenate(parts) for parts in zip(*samples))
-    return {"s11": impact.block_averages(x, area, s11, size, blocks), "v1": impact.block_averages(x, area, v1, size, blocks)}
+    return {
+        "s11": impact.block_averages(x, area, s11, size, blocks),
+        "v1": impact.block_averages(x, area, v1, size, blocks),
+    }
 
 
 def reference_blocks(path, time, suffix):

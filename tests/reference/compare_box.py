@@ -67,7 +67,9 @@ def relative_error(x, area, f, v):
     v_exact = v_exact(x)[0]
 
     def size(df, dv):
-        return np.sqrt(np.sum(area * (np.sum(df**2, axis=(-1, -2)) + np.sum(dv**2, axis=-1) / impact.PRESSURE_SPEED**2)))
+        return np.sqrt(
+            np.sum(area * (np.sum(df**2, axis=(-1, -2)) + np.sum(dv**2, axis=-1) / impact.PRESSURE_SPEED**2))
+        )
 
     return size(f - f_exact, v - v_exact) / size(f_exact - np.eye(2), v_exact)
 

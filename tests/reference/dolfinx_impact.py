@@ -10,6 +10,7 @@ usage: dolfinx_impact.py MESH.xdmf OUT.npz [--name mesh] [--viscosity 0.05] [--e
 import argparse
 import logging
 import time
+from functools import partial
 
 import numpy as np
 import ufl
@@ -21,7 +22,7 @@ import impact
 
 
 def read_mesh(path, name):
-    """The mesh of an XDMF file by the name of its grid, and the smallest length of its cells (area over longest edge)."""
+    """The mesh of an XDMF file by the name of its grid, and its smallest cell length (area over longest edge)."""
     with XDMFFile(MPI.COMM_SELF, path, "r") as file:
         mesh = file.read_mesh(name=name)
     tdim = mesh.topology.dim
@@ -46,8 +47,8 @@ def solve(problem, mesh, length, viscosity, end):
     """Runs the problem; returns the functions (u, v) at the end."""
     space = fem.VectorFunctionSpace(mesh, ("Lagrange", 2))
     u, v, w = fem.Function(space), fem.Function(space), ufl.TestFunction(space)
-    spacing = length / 2
-    eta = viscosity * impact.DENSITY * impact.PRESSURE_SPEED * spacing
+    # General quadrilaterals get a further margin.
+    steps, dt, eta = impact.explicit_stepping(length, viscosity, end, safety=0.7)
     nodes = ufl.dx(metadata={"quadrature_rule": "GLL", "quadrature_degree": 2})
     inner = ufl.dx(metadata={"quadrature_degree": 4})
     f = ufl.Identity(2) + ufl.grad(u)
@@ -58,17 +59,11 @@ def solve(problem, mesh, length, viscosity, end):
     if mass.min() <= 0:
         raise SystemExit("the lumped mass is not positive: the Gauss-Lobatto rule is not on the nodes")
 
-    sides = {"left": (0, 0.0), "right": (0, problem.size), "bottom": (1, 0.0), "top": (1, problem.size)}
     fixed = []
-    for axis, place in (sides[side] for side in problem.rollers):
-        dofs = fem.locate_dofs_geometrical(space, lambda x: np.isclose(x[axis], place))
+    for axis, place in problem.walls():
+        dofs = fem.locate_dofs_geometrical(space, partial(impact.on_side, axis=axis, place=place))
         fixed.append(2 * dofs + axis)
     fixed = np.concatenate(fixed)
-
-    # As in skfem_impact.py; general quadrilaterals get a further margin.
-    omega = np.sqrt(2 * 24) * impact.PRESSURE_SPEED / length
-    damping = viscosity * spacing / (2 * impact.PRESSURE_SPEED) * omega
-    steps, dt = impact.time_steps(end, 0.7 * 2 / omega * (np.sqrt(1 + damping**2) - damping))
 
     work = fem.petsc.create_vector(force)
 

@@ -23,6 +23,11 @@ class Problem:
     rollers: tuple  # of left, right, bottom, top: no normal velocity, no shear; the other sides are free
     velocity: object  # velocity(x, y) at t = 0, a pair
 
+    def walls(self):
+        """(axis, place) of each roller: the side where that coordinate has that value, held in that direction."""
+        sides = {"left": (0, 0.0), "right": (0, self.size), "bottom": (1, 0.0), "top": (1, self.size)}
+        return [sides[side] for side in self.rollers]
+
 
 IMPACT = Problem(3.0, 3e-4, ("left", "bottom"), lambda x, y: (-200.0 + 0 * x, 0 * x))
 """The paper's impact: the left side is the wall, the bottom the axis of symmetry."""
@@ -34,6 +39,11 @@ BOX = Problem(
     lambda x, y: (300 * np.sin(np.pi * x) * np.cos(np.pi * y), -150 * np.cos(np.pi * x) * np.sin(np.pi * y)),
 )
 """A smooth nonlinear motion in a closed box."""
+
+
+def on_side(x, axis, place):
+    """Whether points x[axis, point] lie on the line where that coordinate is `place`."""
+    return np.isclose(x[axis], place)
 
 
 def piola(f):
@@ -77,10 +87,17 @@ def relative_l1(a, b):
     return float(np.sum(np.abs(a - b)) / np.sum(np.abs(b)))
 
 
-def time_steps(end, limit):
-    """(steps, dt) with equal steps of at most `limit` that end at `end`."""
-    steps = int(np.ceil(end / limit))
-    return steps, end / steps
+def explicit_stepping(length, viscosity, end, safety=0.8):
+    """(steps, dt, eta) of central differences on lumped biquadratic elements of the smallest length `length`.
+
+    eta is the viscosity in Pa s: P += eta dF/dt with eta = viscosity rho0 c_p h, h = length / 2 between nodes. The
+    largest frequency is sqrt(24) c / length per direction; viscosity, taken explicitly, shortens the step to
+    2 / omega (sqrt(1 + z^2) - z). `safety` leaves room for waves that compression quickens.
+    """
+    omega = np.sqrt(2 * 24) * PRESSURE_SPEED / length
+    z = viscosity * (length / 2) * omega / (2 * PRESSURE_SPEED)
+    steps = int(np.ceil(end / (safety * 2 / omega * (np.sqrt(1 + z**2) - z))))
+    return steps, end / steps, viscosity * DENSITY * PRESSURE_SPEED * length / 2
 
 
 def save_blocks(path, time, x, weight, f, v):

@@ -13,6 +13,7 @@ usage: skfem_impact.py OUT.npz [--cells 60] [--viscosity 0.05] [--end 3e-4]
 
 import argparse
 import time
+from functools import partial
 
 import numpy as np
 from skfem import Basis, BilinearForm, ElementQuad2, ElementVector, LinearForm, MeshQuad
@@ -51,21 +52,12 @@ def solve(problem, cells, viscosity=0.0, end=None):
     mass = inertia.assemble(Basis(mesh, element, quadrature=rule)).diagonal()
     basis = Basis(mesh, element, intorder=4)
 
-    spacing = problem.size / cells / 2
-    eta = viscosity * impact.DENSITY * impact.PRESSURE_SPEED * spacing
-    # Largest frequency of this element: sqrt(24) c / h per direction, h = 2 spacing. Compression quickens waves
-    # by a few percent, viscosity (explicit) shortens the step further: 2 / omega (sqrt(1 + z^2) - z).
-    omega = np.sqrt(2 * 24) * impact.PRESSURE_SPEED / (2 * spacing)
-    damping = viscosity * spacing / (2 * impact.PRESSURE_SPEED) * omega
-    limit = 2 / omega * (np.sqrt(1 + damping**2) - damping)
-    steps, dt = impact.time_steps(end or problem.end, 0.8 * limit)
+    steps, dt, eta = impact.explicit_stepping(problem.size / cells, viscosity, end or problem.end)
 
-    sides = {"left": ("u^1", 0, 0.0), "right": ("u^1", 0, problem.size), "bottom": ("u^2", 1, 0.0), "top": ("u^2", 1, problem.size)}
     fixed = []
-    for side in problem.rollers:
-        name, axis, place = sides[side]
-        facets = mesh.facets_satisfying(lambda x: np.isclose(x[axis], place), boundaries_only=True)
-        fixed.append(basis.get_dofs(facets).all(name))
+    for axis, place in problem.walls():
+        facets = mesh.facets_satisfying(partial(impact.on_side, axis=axis, place=place), boundaries_only=True)
+        fixed.append(basis.get_dofs(facets).all(f"u^{axis + 1}"))
     fixed = np.concatenate(fixed)
 
     def acceleration(u, v):
@@ -105,7 +97,8 @@ def main():
     x = np.moveaxis(np.asarray(basis.global_coordinates()), 0, -1)
     velocity = np.moveaxis(np.asarray(basis.interpolate(v)), 0, -1)
     impact.save_blocks(args.out, args.end, x, basis.dx, deformation(basis.interpolate(u)), velocity)
-    print(f"scikit-fem: {args.cells}x{args.cells} Q2 to {args.end:g} s in {time.perf_counter() - start:.1f} s, wrote {args.out}")
+    seconds = time.perf_counter() - start
+    print(f"scikit-fem: {args.cells}x{args.cells} Q2 to {args.end:g} s in {seconds:.1f} s, wrote {args.out}")
 
 
 if __name__ == "__main__":
