@@ -38,9 +38,8 @@ impl Lagrange {
     pub fn derivatives(&self, x: f64) -> Vec<f64> {
         let n = &self.nodes;
         let others = |k: usize| (0..n.len()).filter(move |&j| j != k);
-        let without = |k: usize, i: usize| -> f64 {
-            others(k).filter(|&j| j != i).map(|j| (x - n[j]) / (n[k] - n[j])).product()
-        };
+        let without =
+            |k: usize, i: usize| -> f64 { others(k).filter(|&j| j != i).map(|j| (x - n[j]) / (n[k] - n[j])).product() };
         (0..n.len()).map(|k| others(k).map(|i| without(k, i) / (n[k] - n[i])).sum()).collect()
     }
 

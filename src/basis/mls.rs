@@ -37,9 +37,8 @@ impl MovingLeastSquares {
         let (largest, smallest) = (svd.singular_values.max(), svd.singular_values.min());
         let rank = svd.rank(RANK_TOLERANCE * largest);
         let condition = if rank < size { f64::INFINITY } else { largest / smallest };
-        let inverse = svd
-            .pseudo_inverse(RANK_TOLERANCE * largest)
-            .map_err(|why| Error::input(why, "give finite coordinates"))?;
+        let inverse =
+            svd.pseudo_inverse(RANK_TOLERANCE * largest).map_err(|why| Error::input(why, "give finite coordinates"))?;
         Ok(Self { degree, inverse, rank, condition })
     }
 

@@ -1,1 +1,105 @@
-//! (to come)
+//! The program: one file a subcommand, arguments and `run`.
+
+mod export;
+mod mesh;
+mod pipeline;
+mod preprocess;
+mod print;
+mod progress;
+mod run;
+mod seed;
+mod solve;
+mod summary;
+
+use crate::error::{Error, Result};
+use clap::{Parser, Subcommand};
+use std::path::{Path, PathBuf};
+
+/// ADER Discontinuous Galerkin Material Point Method for fast, large-deformation solid dynamics.
+#[derive(Debug, Parser)]
+#[command(version, about, infer_subcommands = false)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Import, make or inspect a mesh of quadrilaterals
+    Mesh(mesh::Args),
+    /// Put material points into the cells of a mesh
+    Seed(seed::Args),
+    /// Compute and store all matrices; say what the run will cost
+    Preprocess(preprocess::Args),
+    /// Step the conservation laws from stored files
+    Solve(solve::Args),
+    /// All of it: mesh, seed, preprocess, solve
+    Run(run::Args),
+    /// Write a run's snapshots for ParaView, meshio and DOLFINx
+    Export(export::Args),
+}
+
+/// Runs a parsed command line.
+///
+/// # Errors
+/// The one message for the user; its exit code is [`Error::exit_code`].
+pub fn run(cli: Cli) -> Result<()> {
+    match cli.command {
+        Command::Mesh(args) => mesh::run(&args),
+        Command::Seed(args) => seed::run(&args),
+        Command::Preprocess(args) => preprocess::run(&args),
+        Command::Solve(args) => solve::run(&args),
+        Command::Run(args) => run::run(&args),
+        Command::Export(args) => export::run(&args),
+    }
+}
+
+/// The scene of a command, with its overrides.
+#[derive(Debug, clap::Args)]
+struct SceneArgs {
+    /// Scene file (TOML)
+    scene: PathBuf,
+    /// Override a key: scheme.degree=3, boundary.0.kind=free
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    sets: Vec<String>,
+}
+
+/// Where a run's results go, and on how many threads it runs.
+#[derive(Debug, clap::Args)]
+struct RunArgs {
+    /// Folder for the results [default: runs/<scene name>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace results of an earlier run
+    #[arg(long)]
+    force: bool,
+    /// Threads [default: all processors]; the results do not depend on it
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+}
+
+impl RunArgs {
+    /// The folder, `runs/<scene name>` by default.
+    fn folder(&self, scene: &crate::scene::Scene) -> crate::run::Folder {
+        let default = || Path::new("runs").join(scene.name());
+        crate::run::Folder::new(&self.out.clone().unwrap_or_else(default))
+    }
+
+    /// Starts the threads.
+    fn start_threads(&self) -> Result<()> {
+        let Some(threads) = self.threads else { return Ok(()) };
+        if threads == 0 {
+            return Err(Error::input("--threads is 0", "give a number of threads from 1"));
+        }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        pool.map_err(|why| Error::input(format!("cannot start {threads} threads: {why}"), "give a smaller --threads"))
+    }
+}
+
+/// Refuses to write over a file unless `force`.
+fn keep(path: &Path, force: bool) -> Result<()> {
+    if path.exists() && !force {
+        return Err(Error::input(format!("{} exists", path.display()), "give --force to replace it, or another --out"));
+    }
+    Ok(())
+}

@@ -4,7 +4,9 @@ use crate::mesh::{Mesh, map};
 pub struct Locator<'a>(&'a Mesh);
 impl<'a> Locator<'a> {
     /// stand-in
-    pub fn new(m: &'a Mesh) -> Self { Self(m) }
+    pub fn new(m: &'a Mesh) -> Self {
+        Self(m)
+    }
     /// stand-in
     pub fn find(&self, x: [f64; 2]) -> Option<(usize, [f64; 2])> {
         (0..self.0.cells.len()).find_map(|c| {
@@ -14,4 +16,6 @@ impl<'a> Locator<'a> {
     }
 }
 /// stand-in
-pub fn from_points(_m: &Mesh, _p: &[[f64; 2]]) -> crate::error::Result<super::Cloud> { Ok(super::Cloud::default()) }
+pub fn from_points(_m: &Mesh, _p: &[[f64; 2]]) -> crate::error::Result<super::Cloud> {
+    Ok(super::Cloud::default())
+}

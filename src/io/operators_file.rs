@@ -28,7 +28,8 @@ pub fn key(mesh: &Mesh, material: &[usize], needs: &Needs) -> String {
 
 /// Writes the matrices under their key.
 pub fn write(path: &Path, key: &str, stored: &Stored) -> Result<()> {
-    let parts = [("points", stored.points.as_ref().map(Flat::of)), ("curl_free", stored.curl_free.as_ref().map(Flat::of))];
+    let parts =
+        [("points", stored.points.as_ref().map(Flat::of)), ("curl_free", stored.curl_free.as_ref().map(Flat::of))];
     let mut arrays = Vec::new();
     for (name, flat) in &parts {
         let Some(flat) = flat else { continue };

@@ -55,12 +55,7 @@ impl Material for NeoHookean {
     fn stress<L: Lane>(&self, f: [L; 4], _: &mut [L]) -> [L; 4] {
         let Terms { a, b, .. } = self.terms(f);
         let g = tensor::cofactor(f);
-        [
-            a.mul_add(f[0], b * g[0]),
-            a.mul_add(f[1], b * g[1]),
-            a.mul_add(f[2], b * g[2]),
-            a.mul_add(f[3], b * g[3]),
-        ]
+        [a.mul_add(f[0], b * g[0]), a.mul_add(f[1], b * g[1]), a.mul_add(f[2], b * g[2]), a.mul_add(f[3], b * g[3])]
     }
 
     /// P33 = A + B J.

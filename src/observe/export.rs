@@ -20,8 +20,9 @@ pub fn grid(mesh: &Mesh, solution: &Solution, fields: &[Field]) -> HighOrderGrid
 
 /// The material points as vertices, with their fields and the number of their cell.
 pub fn points(mesh: &Mesh, cloud: &Cloud, solution: &Solution, fields: &[Field]) -> PointCloud {
-    let at: Vec<_> =
-        (0..mesh.cells.len()).flat_map(|cell| cloud.of(cell).iter().map(move |&xi| (cell, solution.at(cell, xi)))).collect();
+    let at: Vec<_> = (0..mesh.cells.len())
+        .flat_map(|cell| cloud.of(cell).iter().map(move |&xi| (cell, solution.at(cell, xi))))
+        .collect();
     let place = |cell: usize| {
         let corners = mesh.corners(cell);
         cloud.of(cell).iter().map(move |&xi| map::position(&corners, xi))

@@ -6,8 +6,17 @@ use crate::io::csv::Table;
 use std::path::Path;
 
 const COLUMNS: [&str; 11] = [
-    "step", "t", "dt", "kinetic_energy", "strain_energy", "total_energy", "momentum_1", "momentum_2", "min_j",
-    "max_curl_f", "c_max",
+    "step",
+    "t",
+    "dt",
+    "kinetic_energy",
+    "strain_energy",
+    "total_energy",
+    "momentum_1",
+    "momentum_2",
+    "min_j",
+    "max_curl_f",
+    "c_max",
 ];
 
 /// Writes a row each time it looks. Energies in J and momenta in kg m/s, per metre of thickness.

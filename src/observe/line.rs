@@ -40,7 +40,13 @@ impl Line {
     ///
     /// # Errors
     /// A sample outside of the mesh; a file that cannot be made.
-    pub fn create(path: &Path, mesh: &Mesh, material: &[usize], samples: &Samples, schedule: Schedule) -> Result<Self, Error> {
+    pub fn create(
+        path: &Path,
+        mesh: &Mesh,
+        material: &[usize],
+        samples: &Samples,
+        schedule: Schedule,
+    ) -> Result<Self, Error> {
         let at = samples.locate(mesh)?;
         let names: Vec<String> = samples.fields.iter().flat_map(|field| field.components()).collect();
         let columns: Vec<&str> = ["t", "s", "x", "y"].into_iter().chain(names.iter().map(String::as_str)).collect();
@@ -59,7 +65,13 @@ impl Samples {
             let x = [0, 1].map(|k| if i + 1 == self.count { to[k] } else { from[k] + share * (to[k] - from[k]) });
             let (cell, xi) = locator.find(x).ok_or_else(|| {
                 Error::input(
-                    format!("sample {} of {} of a line, at ({}, {}), lies outside of the mesh", i + 1, self.count, x[0], x[1]),
+                    format!(
+                        "sample {} of {} of a line, at ({}, {}), lies outside of the mesh",
+                        i + 1,
+                        self.count,
+                        x[0],
+                        x[1]
+                    ),
                     "choose `from` and `to` inside of the body in its initial configuration",
                 )
             })?;

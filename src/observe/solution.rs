@@ -1,8 +1,8 @@
 //! The discrete solution as a function of the point: polynomials of F and p, stresses by the law from that F.
 
 use crate::basis::Lagrange;
-use crate::material::Law;
 use crate::io::snapshot::Snapshot;
+use crate::material::Law;
 use crate::state::{State, UNKNOWNS};
 use crate::step::Scheme;
 
@@ -59,6 +59,11 @@ impl<'a> Solution<'a> {
         Self { basis, laws, material, components, u }
     }
 
+    /// Whether the displacement is integrated.
+    pub fn has_displacement(&self) -> bool {
+        self.components > UNKNOWNS
+    }
+
     /// The law of a cell.
     pub fn law(&self, cell: usize) -> &Law {
         &self.laws[self.material[cell]]
@@ -81,7 +86,7 @@ impl<'a> Solution<'a> {
         Point {
             deformation: [value(0), value(1), value(2), value(3)],
             velocity: [value(4) / density, value(5) / density],
-            displacement: if self.components > UNKNOWNS { [value(6), value(7)] } else { [0.0; 2] },
+            displacement: if self.has_displacement() { [value(6), value(7)] } else { [0.0; 2] },
         }
     }
 }

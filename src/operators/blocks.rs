@@ -46,8 +46,13 @@ impl Blocks {
     /// Blocks for cells with the given laws and links.
     pub fn new(material: &[usize], links: &[[Link; 4]]) -> Self {
         let laws = material.iter().max().map_or(0, |last| last + 1);
-        let mut blocks =
-            Self { cells: vec![], count: vec![], material: vec![], slot: vec![(0, 0); material.len()], neighbours: vec![] };
+        let mut blocks = Self {
+            cells: vec![],
+            count: vec![],
+            material: vec![],
+            slot: vec![(0, 0); material.len()],
+            neighbours: vec![],
+        };
         for law in 0..laws {
             let cells: Vec<usize> = (0..material.len()).filter(|&cell| material[cell] == law).collect();
             for chunk in cells.chunks(LANES) {

@@ -30,7 +30,9 @@ pub fn certify(mesh: &Mesh, line: &Line, sampling: Sampling) -> Result<Vec<Certi
     let (class, examples) = sampling.classes(&nodes, mesh.cells.len());
     let fit = |&cell: &usize| quality(line, sampling.of(&nodes, cell));
     let fits = examples.par_iter().map(fit).collect::<Result<Vec<_>, Error>>()?;
-    Ok((0..mesh.cells.len()).map(|cell| Certificate { h: map::h_e(&mesh.corners(cell)), ..fits[class[cell]] }).collect())
+    Ok((0..mesh.cells.len())
+        .map(|cell| Certificate { h: map::h_e(&mesh.corners(cell)), ..fits[class[cell]] })
+        .collect())
 }
 
 fn quality(line: &Line, xi: &[[f64; 2]]) -> Result<Certificate, Error> {

@@ -38,8 +38,10 @@ impl CurlFree {
             [1, 2, 3].map(|k| [0, 1].map(|i| ((c[k][i] - c[0][i]) / (size * 1e-12)).round() as i64))
         };
         let (class, examples) = classes(mesh.cells.len(), key);
-        let all =
-            examples.par_iter().map(|&cell| complement(&mesh.corners(cell), line)).collect::<Result<Vec<_>, Error>>()?;
+        let all = examples
+            .par_iter()
+            .map(|&cell| complement(&mesh.corners(cell), line))
+            .collect::<Result<Vec<_>, Error>>()?;
         let columns = all.iter().map(|c| c.columns).max().unwrap_or(0);
         Ok(Pool::new(&blocks.cells, &class, all, |lanes| {
             let padded = lanes.map(|c| widen(c, columns));

@@ -139,8 +139,15 @@ fn at_points(line: &Line, xi: &[[f64; 2]], number: u64) -> Result<PointMatrices<
     let fit = MovingLeastSquares::new(line.m - 1, xi)?;
     if fit.rank < n {
         return Err(Error::input(
-            format!("cell {number} cannot carry degree {}: its {np} points have rank {}, needed is {n}", line.m - 1, fit.rank),
-            format!("put at least {} x {} points in general position into each cell, or lower scheme.degree", line.m, line.m),
+            format!(
+                "cell {number} cannot carry degree {}: its {np} points have rank {}, needed is {n}",
+                line.m - 1,
+                fit.rank
+            ),
+            format!(
+                "put at least {} x {} points in general position into each cell, or lower scheme.degree",
+                line.m, line.m
+            ),
         ));
     }
     let slopes: Vec<[Vec<f64>; 2]> = xi.iter().map(|&x| fit.gradients(x)).collect();

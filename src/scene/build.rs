@@ -1,12 +1,14 @@
 //! Where names become types: from a scene to mesh, cloud, operators, scheme, initial state and observers.
 
-use super::{Boundary, Condition, Curl, Expression, Layout, Mesh as Source, Method, Output, Scene, Step, What, When};
+use super::{
+    Boundary, Condition, Curl, Expression, LAWS, Layout, Mesh as Source, Method, Output, Scene, Step, What, When,
+};
 use crate::boundary::{self, Data};
 use crate::cloud::{self, Cloud, seed};
 use crate::error::{Error, Place, Result};
 use crate::io::{cloud_file, gmsh, mesh_file, store};
 use crate::lane::Kernel;
-use crate::material::{Law, NeoHookean};
+use crate::material::Law;
 use crate::mesh::{self, Mesh};
 use crate::observe::{Field, Ledger, Line, Observer, Samples, Schedule, Snapshots};
 use crate::operators::{Needs, Operators, Sampling};
@@ -94,12 +96,11 @@ impl Scene {
     pub fn build_laws(&self) -> Vec<Law> {
         let build = |m: &scene::Material| {
             let parameter = |name: &str| m.parameters.get(name).copied().unwrap_or(f64::NAN);
-            // The registry: every name in `LAWS` has its line here (`every_law_of_the_list_is_built` holds it).
-            match m.law.as_str() {
-                _neo_hookean => Law::NeoHookean(NeoHookean::new(parameter("young"), parameter("poisson"), m.density)),
-            }
+            let law = LAWS.iter().find(|law| law.name == m.law)?;
+            Some((law.build)(&parameter, m.density))
         };
-        self.materials.iter().map(build).collect()
+        // Parsing has refused names that the list lacks.
+        self.materials.iter().filter_map(build).collect()
     }
 
     /// The scheme.
@@ -120,7 +121,16 @@ impl Scene {
             _ => None,
         };
         let sources = self.sources.iter().map(|s| self.source(s)).collect();
-        Scheme { operators, laws: self.build_laws(), method, flux: self.scheme.flux, boundaries, sources, curl_rate, kernel }
+        Scheme {
+            operators,
+            laws: self.build_laws(),
+            method,
+            flux: self.scheme.flux,
+            boundaries,
+            sources,
+            curl_rate,
+            kernel,
+        }
     }
 
     fn source(&self, source: &scene::Source) -> Box<dyn source::Source> {
@@ -267,11 +277,13 @@ pub fn read_cloud(path: &Path, mesh: &Mesh) -> Result<Cloud> {
     if store::is_store(path) {
         return cloud_file::read_cloud_of(path, mesh);
     }
-    let text = std::fs::read_to_string(path)
-        .map_err(|why| Error::at(Place::file(path), format!("cannot read the cloud: {why}"), "give a file of points x, y"))?;
+    let text = std::fs::read_to_string(path).map_err(|why| {
+        Error::at(Place::file(path), format!("cannot read the cloud: {why}"), "give a file of points x, y")
+    })?;
     let mut points = Vec::new();
     for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-        let numbers: Vec<f64> = line.split([',', ' ', '\t']).filter(|t| !t.is_empty()).map_while(|t| t.parse().ok()).collect();
+        let numbers: Vec<f64> =
+            line.split([',', ' ', '\t']).filter(|t| !t.is_empty()).map_while(|t| t.parse().ok()).collect();
         match numbers[..] {
             [x, y, ..] if x.is_finite() && y.is_finite() => points.push([x, y]),
             _ if number == 0 => {} // names of the columns

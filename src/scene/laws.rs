@@ -1,6 +1,7 @@
 //! The laws that scenes can name, with their parameters: what a `[[material]]` is checked against.
 
 use super::reader::{Check, POSITIVE};
+use crate::material::{self, NeoHookean};
 
 /// A law and its parameters, all required.
 #[derive(Debug)]
@@ -9,6 +10,8 @@ pub struct Law {
     pub name: &'static str,
     /// Its parameters.
     pub parameters: &'static [Parameter],
+    /// Makes it from its parameters, by name, and rho0 (kg/m^3).
+    pub build: fn(&dyn Fn(&str) -> f64, f64) -> material::Law,
 }
 
 /// A parameter of a law.
@@ -33,4 +36,5 @@ pub const LAWS: &[Law] = &[Law {
             check: Check { range: "greater than -1 and less than 0.5", holds: |nu| nu > -1.0 && nu < 0.5 },
         },
     ],
+    build: |of, density| material::Law::NeoHookean(NeoHookean::new(of("young"), of("poisson"), density)),
 }];

@@ -23,10 +23,10 @@ use serde::Serialize;
 use toml_edit::{Document, DocumentMut};
 
 use crate::error::{Error, Place, Result};
-pub use expression::{Expression, FUNCTIONS, Fault};
-pub use laws::{LAWS, Law, Parameter};
 pub use crate::observe::Field;
 pub use crate::riemann::Flux;
+pub use expression::{Expression, FUNCTIONS, Fault};
+pub use laws::{LAWS, Law, Parameter};
 pub use names::{Method, Sweeps};
 use origin::{Origin, Part};
 

@@ -24,8 +24,14 @@ pub struct Totals {
 
 impl Totals {
     /// No cell yet.
-    const EMPTY: Totals =
-        Totals { kinetic: 0.0, strain: 0.0, momentum: [0.0; 2], deformation: [0.0; 4], min_j: f64::INFINITY, max_curl: 0.0 };
+    const EMPTY: Totals = Totals {
+        kinetic: 0.0,
+        strain: 0.0,
+        momentum: [0.0; 2],
+        deformation: [0.0; 4],
+        min_j: f64::INFINITY,
+        max_curl: 0.0,
+    };
 
     /// Kinetic and strain energy, J/m.
     pub fn energy(&self) -> f64 {

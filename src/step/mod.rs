@@ -90,9 +90,8 @@ impl Work {
     /// Memory for steps of `scheme` on states like `state`, for the current number of threads.
     pub fn new(scheme: &Scheme, state: &State) -> Self {
         let operators = &scheme.operators;
-        let points = operators.points.as_ref().map_or(0, |p| {
-            p.first.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0)
-        });
+        let points =
+            operators.points.as_ref().map_or(0, |p| p.first.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0));
         let (stages, times) = match &scheme.method {
             Method::Ader { time, .. } => (1, time.len()),
             Method::RungeKutta(tableau) => (tableau.stages(), 1),
@@ -167,12 +166,14 @@ impl Scheme {
         let traces = 4 * self.operators.line.m * TRACE;
         let (before, now) = work.rates.split_at_mut(stage.number);
         let (before, scratch) = (&*before, &work.scratch);
-        now[0].par_chunks_mut(stride).zip(work.traces.par_chunks_mut(traces)).enumerate().for_each(|(block, (rate, traces))| {
-            with_scratch(scratch, |scratch| {
-                let work = begin::Block { scheme: self, stage, block, state, before, rate, traces, scratch };
-                self.kernel.run(work)
-            })
-        });
+        now[0].par_chunks_mut(stride).zip(work.traces.par_chunks_mut(traces)).enumerate().for_each(
+            |(block, (rate, traces))| {
+                with_scratch(scratch, |scratch| {
+                    let work = begin::Block { scheme: self, stage, block, state, before, rate, traces, scratch };
+                    self.kernel.run(work)
+                })
+            },
+        );
     }
 
     /// Fluxes, lift, and after the last stage the update, of every block.
@@ -180,12 +181,25 @@ impl Scheme {
         let stride = state.components * self.operators.nodes();
         let (before, now) = work.rates.split_at_mut(stage.number);
         let (before, scratch, traces) = (&*before, &work.scratch, &work.traces[..]);
-        now[0].par_chunks_mut(stride).zip(work.next.u.par_chunks_mut(stride)).enumerate().for_each(|(block, (rate, next))| {
-            with_scratch(scratch, |scratch| {
-                let work = finish::Block { scheme: self, stage, block, state, survey, before, rate, traces, next, scratch };
-                self.kernel.run(work)
-            })
-        });
+        now[0].par_chunks_mut(stride).zip(work.next.u.par_chunks_mut(stride)).enumerate().for_each(
+            |(block, (rate, next))| {
+                with_scratch(scratch, |scratch| {
+                    let work = finish::Block {
+                        scheme: self,
+                        stage,
+                        block,
+                        state,
+                        survey,
+                        before,
+                        rate,
+                        traces,
+                        next,
+                        scratch,
+                    };
+                    self.kernel.run(work)
+                })
+            },
+        );
     }
 
     /// Number of stages of a step (1 for ADER).

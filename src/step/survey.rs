@@ -48,7 +48,9 @@ impl std::fmt::Display for LossKind {
         match self {
             LossKind::NotFinite => write!(f, "a number of the state is not finite"),
             LossKind::Inverted(j) => write!(f, "J = {j:.3e} <= 0: the material is turned inside out"),
-            LossKind::NotHyperbolic => write!(f, "loss of hyperbolicity: the acoustic tensor has a negative eigenvalue"),
+            LossKind::NotHyperbolic => {
+                write!(f, "loss of hyperbolicity: the acoustic tensor has a negative eigenvalue")
+            }
         }
     }
 }
@@ -66,7 +68,8 @@ impl Scheme {
                 let found = self.kernel.run(Block { scheme: self, state, block, scratch });
                 *speed = found.speed;
                 let real = ..blocks.count[block];
-                let healthy = found.poison.0[real].iter().all(|x| *x == 0.0) && found.min_j.0[real].iter().all(|j| *j > 0.0);
+                let healthy =
+                    found.poison.0[real].iter().all(|x| *x == 0.0) && found.min_j.0[real].iter().all(|j| *j > 0.0);
                 let fastest = found.speed.0[real].iter().fold(0.0_f64, |a, b| a.max(*b));
                 let min_j = found.min_j.0[real].iter().fold(f64::INFINITY, |a, b| a.min(*b));
                 (if healthy { usize::MAX } else { block }, fastest, min_j)

@@ -1,0 +1,19 @@
+//! `dgmpm run`: all stages in one go.
+
+use super::pipeline::Files;
+use super::{RunArgs, SceneArgs, solve};
+use crate::error::Result;
+
+/// Arguments.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    run: RunArgs,
+}
+
+/// Runs it.
+pub fn run(args: &Args) -> Result<()> {
+    solve::all(&args.scene, &Files::default(), None, &args.run)
+}

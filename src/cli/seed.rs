@@ -1,0 +1,47 @@
+//! `dgmpm seed`: material points into the cells of a mesh.
+
+use super::pipeline::Files;
+use super::print::say;
+use super::{SceneArgs, keep};
+use crate::cloud::Cloud;
+use crate::error::Result;
+use crate::io::cloud_file;
+use crate::scene::Scene;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Arguments.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Mesh file in place of the scene's
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
+    /// Where to write
+    #[arg(long, value_name = "FILE", default_value = "cloud.h5")]
+    out: PathBuf,
+    /// Replace the file
+    #[arg(long)]
+    force: bool,
+}
+
+/// Runs it.
+pub fn run(args: &Args) -> Result<()> {
+    let scene = Scene::load(&args.scene.scene, &args.scene.sets)?;
+    let body = Files { mesh: args.mesh.clone(), cloud: None }.body(&scene)?;
+    keep(&args.out, args.force)?;
+    cloud_file::write_cloud(&args.out, &body.cloud, &body.mesh)?;
+    report(&body.cloud);
+    say(format!("written to {}", args.out.display()));
+    Ok(())
+}
+
+/// Prints how many points the cells have.
+pub fn report(cloud: &Cloud) {
+    let mut classes = BTreeMap::new();
+    cloud.first.windows(2).for_each(|w| *classes.entry(w[1] - w[0]).or_insert(0_usize) += 1);
+    for (points, cells) in classes {
+        say(format!("{cells} cells with {points} points"));
+    }
+}
