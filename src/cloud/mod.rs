@@ -29,5 +29,3 @@ impl Cloud {
         self.xi.is_empty()
     }
 }
-/// stand-in
-pub mod locate;

@@ -9,8 +9,6 @@
 
 pub mod cloud_file;
 pub mod csv;
-/// stand-in
-pub mod gmsh;
 pub mod grid;
 pub mod hash;
 pub mod hdf5;
