@@ -187,6 +187,13 @@ impl Scene {
     pub fn settings(&self, integration: &Integration) -> Result<Settings> {
         let n = self.scheme.degree;
         let limit = cfl::limit(integration, n);
+        if limit == 0.0 {
+            return Err(self.error(
+                "scheme.time_degree",
+                format!("explicit Euler (time_degree = 0) is unstable at every step for degree {n}"),
+                "give time_degree from 1 to 6 (the default is the degree), or degree = 0",
+            ));
+        }
         let (key, safety) = match self.scheme.step {
             Step::Safety(safety) => ("scheme.safety", safety),
             Step::Cfl(cfl) => ("scheme.cfl", cfl::safety_of_cfl(cfl, integration, n)),
@@ -290,5 +297,8 @@ pub fn read_cloud(path: &Path, mesh: &Mesh) -> Result<Cloud> {
             _ => return Err(Error::at(Place::line(path, number + 1, 1), "this is not a point", "give x, y in m")),
         }
     }
-    cloud::locate::from_points(mesh, &points)
+    let located = cloud::from_points(mesh, &cloud::Locator::new(mesh), &points);
+    located
+        .map(|(cloud, _)| cloud)
+        .map_err(|why| Error::at(Place::file(path), why.to_string(), "give points inside of the mesh, in m"))
 }
