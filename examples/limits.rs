@@ -92,5 +92,6 @@ fn grows(scheme: &Scheme, uniform: [f64; 6], courant: f64) -> bool {
         scheme.step(&state, courant / CELLS as f64 / survey.fastest, &survey, &mut work);
         std::mem::swap(&mut state, &mut work.next);
     }
-    !(size(&state) < 1.2 * early)
+    let late = size(&state);
+    late.is_nan() || late >= 1.2 * early
 }

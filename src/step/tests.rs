@@ -198,6 +198,56 @@ fn with_points_on_the_gauss_nodes_dgmpm_is_dgfem_after_1000_steps() {
     }
 }
 
+/// Two laws in a chessboard: every face is an interface.
+fn chessboard(mesh: &Mesh, kind: Kind) -> (Scheme, Vec<f64>) {
+    let cloud = midpoints(mesh, 2);
+    let base = scheme(mesh, kind, 2, &cloud, || Box::new(crate::boundary::Free));
+    let side = (mesh.cells.len() as f64).sqrt() as usize;
+    let material: Vec<usize> = (0..mesh.cells.len()).map(|cell| (cell % side + cell / side) % 2).collect();
+    let sampling = (kind == Kind::AderDgmpm).then_some(Sampling::Cloud(&cloud));
+    let sampling = if kind == Kind::AderDgfem { Some(Sampling::Nodes) } else { sampling };
+    let needs = Needs { degree: 2, sampling, curl_free: true };
+    let operators = Operators::build(mesh, &links(mesh).unwrap(), &material, &needs).unwrap();
+    let heavy = Law::NeoHookean(NeoHookean::new(3.0, 0.2, 9.0));
+    let densities = material.iter().map(|&m| if m == 0 { 1.3 } else { 9.0 }).collect();
+    (Scheme { operators, laws: vec![steel(), heavy], ..base }, densities)
+}
+
+#[test]
+fn uniform_motion_of_two_materials_makes_no_stress() {
+    let mesh = distorted(4);
+    for kind in KINDS {
+        let (scheme, densities) = chessboard(&mesh, kind);
+        let moving = |_: [f64; 2], a: usize| [1.0, 0.0, 0.0, 1.0, 0.3 * densities[a / 9], -0.2 * densities[a / 9]];
+        let mut state = state(&mesh, &scheme, moving);
+        let before = unpacked(&scheme, &state);
+        march(&scheme, &mut state, 50, 0.05);
+        // Rounding of 50 steps on numbers of size 9.
+        let change = largest_difference(&before, &unpacked(&scheme, &state));
+        assert!(change < 1e-12, "{kind:?}: {change:e}");
+    }
+}
+
+#[test]
+fn interfaces_conserve_momentum_and_dissipate() {
+    let mesh = distorted(4);
+    for kind in KINDS {
+        let (scheme, densities) = chessboard(&mesh, kind);
+        let mut state = state(&mesh, &scheme, |x, a| {
+            let u = wavy(x, a);
+            [u[0], u[1], u[2], u[3], u[4] * densities[a / 9], u[5] * densities[a / 9]]
+        });
+        let first = scheme.totals(&state);
+        march(&scheme, &mut state, 200, 0.05);
+        let last = scheme.totals(&state);
+        for k in 0..2 {
+            // Both sides form v* and t* in their own order of operations: rounding of 200 steps.
+            assert!((last.momentum[k] - first.momentum[k]).abs() < 1e-13, "{kind:?}");
+        }
+        assert!(last.energy() < first.energy(), "{kind:?}");
+    }
+}
+
 #[test]
 fn one_two_and_three_threads_give_the_same_bits() {
     let mesh = distorted(7);
