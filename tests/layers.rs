@@ -116,7 +116,7 @@ fn every_folder_and_file_of_the_source_is_reached() {
 #[test]
 fn only_main_sees_the_command_line() {
     let lib = std::fs::read_to_string(source().join("lib.rs")).unwrap();
-    assert_eq!(lib.lines().filter_map(declared).last(), Some("cli"));
+    assert_eq!(lib.lines().filter_map(declared).next_back(), Some("cli"));
 }
 
 #[test]

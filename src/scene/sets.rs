@@ -101,6 +101,7 @@ fn put(item: &mut Item, key: &str, mut value: Value) -> bool {
 fn put_table(tables: &mut ArrayOfTables, index: usize, value: Value) -> bool {
     let Value::InlineTable(inline) = value else { return false };
     let mut table = inline.into_table();
+    let count = tables.len();
     match tables.get_mut(index) {
         Some(old) => {
             // The place in the text and the comment before it stay.
@@ -108,7 +109,7 @@ fn put_table(tables: &mut ArrayOfTables, index: usize, value: Value) -> bool {
             table.set_position(old.position());
             *old = table;
         }
-        None if index == tables.len() => tables.push(table),
+        None if index == count => tables.push(table),
         None => return false,
     }
     true

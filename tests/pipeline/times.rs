@@ -28,6 +28,42 @@ fn a_snapshot_is_the_step_that_ends_nearest_to_its_time() {
 }
 
 #[test]
+fn a_line_samples_the_polynomial_and_on_an_edge_the_cell_of_the_lower_number() {
+    let bench = Bench::new();
+    let line = "output.1={kind=\"line\", name=\"cut\", from=[0,0], to=[1,0.5], samples=9, at=[0.0], \
+                fields=[\"velocity\", \"deformation\", \"piola\", \"jacobian\"]}";
+    let velocity = "initial.velocity=[\"30 + 20*x - 10*y\", \"step(x - 0.5)\"]";
+    let deformation = "initial.deformation=[\"1 + 0.01*x\", 0, 0, 1]";
+    let sets = ["--set", line, "--set", velocity, "--set", deformation];
+    let output = bench.command("run case.toml").args(sets).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let (header, rows) = bench.table("runs/case/lines/cut.csv");
+    let names = "t s x y velocity_1 velocity_2 deformation_11 deformation_12 deformation_21 deformation_22 piola_11 \
+        piola_12 piola_21 piola_22 piola_33 jacobian";
+    assert_eq!(header.join(" "), names.split_whitespace().collect::<Vec<_>>().join(" "));
+    assert_eq!(rows.len(), 9);
+    let (young, poisson) = (2e11, 0.3);
+    let (kappa, mu) = (young / (3.0 * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson)));
+    for (i, row) in rows.iter().enumerate() {
+        let (x, y) = (i as f64 / 8.0, i as f64 / 16.0);
+        assert_eq!((row[0], row[2], row[3]), (0.0, x, y));
+        assert!((row[1] - 1.25f64.sqrt() * x).abs() < 1e-15);
+        // Degree 1 has linear functions: roundings of four terms of size 50 and 1.
+        assert!((row[4] - (30.0 + 20.0 * x - 10.0 * y)).abs() < 1e-13, "{row:?}");
+        let f = 1.0 + 0.01 * x;
+        assert!((row[6] - f).abs() < 1e-14 && (row[15] - f).abs() < 1e-14, "{row:?}");
+        // Uniaxial: P11 = kappa (J - 1) + mu J^(-2/3) (F11 - I/(3 F11)), I = F11^2 + 2; P33 with F33 = 1.
+        let a = mu * f.powf(-2.0 / 3.0);
+        let trace = (f * f + 2.0) / 3.0;
+        let expected = [kappa * (f - 1.0) + a * (f - trace / f), kappa * (f - 1.0) * f + a * (1.0 - trace)];
+        // kappa and mu of 1e11 times the rounding of F.
+        assert!((row[10] - expected[0]).abs() < 1e-3 && (row[14] - expected[1]).abs() < 1e-3, "{row:?} {expected:?}");
+    }
+    // x = .5, y = .25 is a corner of four cells; the lowest lies left of it, where the step is 0.
+    assert!(rows[4][5] == 0.0 && (rows[5][5] - 1.0).abs() < 1e-15, "{:?}", (rows[4][5], rows[5][5]));
+}
+
+#[test]
 fn exact_times_are_met_to_the_last_bit() {
     let bench = Bench::new();
     bench.run("run case.toml --set output.0.exact_times=true --set output.0.at=[1.3e-5,1.4e-5,7.7e-5]");
