@@ -191,6 +191,13 @@ impl Scene {
     pub fn settings(&self) -> Result<Settings> {
         let (n, integration) = (self.scheme.degree, self.integration());
         let limit = cfl::limit(&integration, n);
+        if limit == 0.0 {
+            return Err(self.error(
+                "scheme.time_degree",
+                format!("explicit Euler (time_degree = 0) is unstable at every step for degree {n}"),
+                "give time_degree from 1 to 6 (the default is the degree), or degree = 0",
+            ));
+        }
         let (key, safety) = match self.scheme.step {
             Step::Safety(safety) => ("scheme.safety", safety),
             Step::Cfl(cfl) => ("scheme.cfl", cfl::safety_of_cfl(cfl, &integration, n)),
