@@ -90,3 +90,117 @@ fn flat(store: &mut Store, name: &str) -> Result<Flat> {
         own: store.reals(&format!("{name}_own"), &[])?,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloud::{Cloud, Layout, seed};
+    use crate::mesh::{links, rectangle};
+    use crate::operators::Line;
+
+    struct Case {
+        mesh: Mesh,
+        cloud: Cloud,
+        blocks: Blocks,
+    }
+
+    const MATERIAL: [usize; 12] = [0; 12];
+
+    /// 12 cells: two blocks, the second padded. A jittered cloud has matrices of its own in each cell.
+    fn case(layout: Layout) -> Case {
+        let mesh = rectangle([4.0, 3.0], [4, 3]).unwrap();
+        let blocks = Blocks::new(&MATERIAL, &links(&mesh).unwrap());
+        Case { cloud: seed(layout, 3, 12), mesh, blocks }
+    }
+
+    fn needs(cloud: &Cloud) -> Needs<'_> {
+        Needs { degree: 2, sampling: Some(Sampling::Cloud(cloud)), curl_free: true }
+    }
+
+    fn build(case: &Case, needs: &Needs) -> Stored {
+        Stored::build(&case.mesh, &case.blocks, &Line::new(needs.degree), needs).unwrap()
+    }
+
+    const JITTER: Layout = Layout::Jitter { seed: 1, amount: 0.2 };
+
+    #[test]
+    fn shared_and_own_matrices_come_back_bit_for_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("operators.h5");
+        for layout in [Layout::Paper, JITTER] {
+            let case = case(layout);
+            let needs = needs(&case.cloud);
+            let stored = build(&case, &needs);
+            let points = stored.points.as_ref().unwrap();
+            assert_eq!((points.shared.len(), points.own.len()), if layout == JITTER { (0, 2) } else { (1, 0) });
+            let key = key(&case.mesh, &MATERIAL, &needs);
+            write(&path, &key, &stored).unwrap();
+            // Every number is finite, so that equality is that of bits but for the sign of 0.
+            let back = read(&path, &key, &case.blocks, &needs).unwrap().unwrap();
+            assert_eq!(back, stored);
+            let bits = |s: &Stored| {
+                let flat = Flat::of(s.points.as_ref().unwrap());
+                flat.own.iter().chain(&flat.shared).map(|v| v.to_bits()).collect::<Vec<_>>()
+            };
+            assert_eq!(bits(&back), bits(&stored));
+        }
+    }
+
+    #[test]
+    fn the_key_tells_all_input_apart() {
+        let (a, b) = (case(Layout::Paper), case(JITTER));
+        let base = needs(&a.cloud);
+        let mut other_mesh = a.mesh.clone();
+        other_mesh.nodes[7][0] += 1e-15;
+        let mut other_law = MATERIAL;
+        other_law[3] = 1;
+        let keys = [
+            key(&a.mesh, &MATERIAL, &base),
+            key(&other_mesh, &MATERIAL, &base),
+            key(&a.mesh, &other_law, &base),
+            key(&a.mesh, &MATERIAL, &needs(&b.cloud)),
+            key(&a.mesh, &MATERIAL, &Needs { degree: 1, ..base }),
+            key(&a.mesh, &MATERIAL, &Needs { curl_free: false, ..base }),
+            key(&a.mesh, &MATERIAL, &Needs { sampling: Some(Sampling::Nodes), ..base }),
+            key(&a.mesh, &MATERIAL, &Needs { sampling: None, ..base }),
+        ];
+        for (i, one) in keys.iter().enumerate() {
+            assert!(!keys[..i].contains(one), "key {i} is not new");
+        }
+        assert_eq!(keys[0], key(&a.mesh.clone(), &MATERIAL, &needs(&a.cloud.clone())));
+    }
+
+    #[test]
+    fn other_input_and_missing_files_give_nothing_and_damage_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("operators.h5");
+        let case = case(Layout::Paper);
+        let needs = needs(&case.cloud);
+        let read = |key: &str| read(&path, key, &case.blocks, &needs);
+        assert_eq!(read("a").unwrap(), None);
+        write(&path, "a", &build(&case, &needs)).unwrap();
+        assert_eq!(read("b").unwrap(), None);
+        assert!(read("a").unwrap().is_some() && may_replace(&path));
+        let mut bytes = std::fs::read(&path).unwrap();
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        std::fs::write(&path, bytes).unwrap();
+        assert!(read("a").unwrap_err().to_string().contains("damaged"));
+        assert!(may_replace(&path));
+        std::fs::write(&path, "text").unwrap();
+        assert!(!may_replace(&path) && !may_replace(&folder.path().join("none")));
+    }
+
+    #[test]
+    fn matrices_that_do_not_fit_the_blocks_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("operators.h5");
+        let case = case(Layout::Paper);
+        let needs = needs(&case.cloud);
+        let mut stored = build(&case, &needs);
+        stored.points.as_mut().unwrap().share.pop();
+        write(&path, "a", &stored).unwrap();
+        let message = read(&path, "a", &case.blocks, &needs).unwrap_err().to_string();
+        assert!(message.contains("do not fit together"), "{message}");
+    }
+}

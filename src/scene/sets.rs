@@ -1,6 +1,6 @@
 //! Overrides of the command line, `--set key.path=value`, on the text of a scene.
 
-use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, Value};
+use toml_edit::{ArrayOfTables, DocumentMut, InlineTable, Item, Key, Table, Value};
 
 use crate::error::{Error, Place, Result};
 
@@ -82,13 +82,35 @@ fn put(item: &mut Item, key: &str, mut value: Value) -> bool {
         table.insert(key, Item::Value(value));
         return true;
     }
-    let (Some(list), Ok(index)) = (item.as_array_mut(), key.parse::<usize>()) else { return false };
+    let Ok(index) = key.parse::<usize>() else { return false };
+    if let Some(tables) = item.as_array_of_tables_mut() {
+        return put_table(tables, index, value);
+    }
+    let Some(list) = item.as_array_mut() else { return false };
     match index {
         _ if index < list.len() => {
             list.replace(index, value);
         }
         _ if index == list.len() => list.push(value),
         _ => return false,
+    }
+    true
+}
+
+/// Replaces a whole table of a list of tables, or appends one: `boundary.1={group = "right", kind = "free"}`.
+fn put_table(tables: &mut ArrayOfTables, index: usize, value: Value) -> bool {
+    let Value::InlineTable(inline) = value else { return false };
+    let mut table = inline.into_table();
+    let count = tables.len();
+    match tables.get_mut(index) {
+        Some(old) => {
+            // The place in the text and the comment before it stay.
+            *table.decor_mut() = old.decor().clone();
+            table.set_position(old.position());
+            *old = table;
+        }
+        None if index == count => tables.push(table),
+        None => return false,
     }
     true
 }

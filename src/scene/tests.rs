@@ -139,6 +139,13 @@ fn sets_replace_rivals_and_grow_lists() {
     assert_eq!(scene.outputs[1].when, When::EverySteps(5));
     let scene = parse(MINIMAL, &["curl.control=off", "cloud={layout=\"gauss\"}"]).unwrap();
     assert_eq!((scene.curl, scene.cloud.layout), (Curl::Off, Layout::Gauss));
+    let scene = parse(MINIMAL, &["boundary.1={group=\"right\", kind=\"traction\", value=[0, 1]}"]).unwrap();
+    assert!(matches!(scene.boundaries[1].condition, Condition::Traction(_)));
+    assert_eq!(parse(&scene.to_toml(), &[]).unwrap().boundaries, scene.boundaries);
+    let sets = ["output.0={kind=\"fields\", every=1e-4}", "boundary.1={group=\"right\", kind=\"clamped\"}"];
+    let scene = parse(MINIMAL, &sets).unwrap();
+    assert_eq!((scene.outputs.len(), &scene.boundaries[1].condition), (1, &Condition::Clamped));
+    assert_eq!(parse(&scene.to_toml(), &[]).unwrap().boundaries, scene.boundaries);
     let with_table = format!("{MINIMAL}[cloud]\nlayout = \"paper\" # where\n[curl]\ncontrol = \"lcf\"\n");
     let scene = parse(&with_table, &["cloud={layout=\"gauss\"}", "curl.alpha=5"]).unwrap();
     assert_eq!((scene.curl, scene.cloud.layout), (Curl::Lcf { alpha: 5.0 }, Layout::Gauss));

@@ -1,0 +1,130 @@
+//! The order of the modules in `src/lib.rs` is the order of dependency: a module uses only those above it.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+fn source() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+}
+
+/// The module that a line `pub mod name;` or `mod name;` declares.
+fn declared(line: &str) -> Option<&str> {
+    let line = line.strip_prefix("pub ").unwrap_or(line);
+    line.strip_prefix("mod ")?.strip_suffix(';')
+}
+
+/// Text without comments and without items under `#[cfg(test)]`, whose ends rustfmt makes easy to find: a `;` on the
+/// same line, or a brace in the column where the item begins. Also the files that are modules under `#[cfg(test)]`.
+fn without_tests(text: &str) -> (String, BTreeSet<String>) {
+    let (mut kept, mut test_files) = (String::new(), BTreeSet::new());
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        if line.trim() != "#[cfg(test)]" {
+            kept.push_str(line.split("//").next().unwrap_or_default());
+            kept.push('\n');
+            continue;
+        }
+        let end = format!("{}}}", &line[..line.len() - line.trim_start().len()]);
+        let item = lines.by_ref().find(|line| !line.trim_start().starts_with("#[")).unwrap_or_default();
+        match declared(item.trim().trim_start_matches("pub(crate) ")) {
+            Some(name) => drop(test_files.insert(name.to_owned())),
+            None if item.trim_end().ends_with([';', '}']) => {}
+            None => drop(lines.by_ref().find(|line| *line == end)),
+        }
+    }
+    (kept, test_files)
+}
+
+/// Modules of the crate that a text names: `crate::name`, and the names of `crate::{..}`.
+fn used(text: &str) -> BTreeSet<String> {
+    let word = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let mut names = BTreeSet::new();
+    for rest in text.split("crate::").skip(1) {
+        let Some(group) = rest.strip_prefix('{') else {
+            names.insert(word(rest));
+            continue;
+        };
+        let mut depth = 0;
+        let mut start = true;
+        for (at, c) in group.char_indices() {
+            match c {
+                '{' => depth += 1,
+                '}' if depth == 0 => break,
+                '}' => depth -= 1,
+                ',' if depth == 0 => start = true,
+                c if start && c.is_alphabetic() => {
+                    names.insert(word(&group[at..]));
+                    start = false;
+                }
+                _ => {}
+            }
+        }
+    }
+    names
+}
+
+/// All that a module uses, over the files of its folder.
+fn uses_of_module(name: &str) -> BTreeSet<String> {
+    let root = source();
+    let mut files = vec![root.join(format!("{name}.rs")), root.join(name).join("mod.rs")];
+    let mut names = BTreeSet::new();
+    while let Some(file) = files.pop() {
+        let Ok(text) = std::fs::read_to_string(&file) else { continue };
+        let (text, tests) = without_tests(&text);
+        names.extend(used(&text));
+        let stem = file.file_stem().unwrap_or_default();
+        let folder = if stem == "mod" { file.parent().unwrap().to_owned() } else { file.with_extension("") };
+        let children = text.lines().filter_map(|line| declared(line.trim().trim_start_matches("pub(crate) ")));
+        for child in children.filter(|child| !tests.contains(*child)) {
+            files.extend([folder.join(format!("{child}.rs")), folder.join(child).join("mod.rs")]);
+        }
+    }
+    names
+}
+
+#[test]
+fn a_module_uses_only_those_above_it() {
+    let lib = std::fs::read_to_string(source().join("lib.rs")).unwrap();
+    let order: Vec<&str> = lib.lines().filter_map(declared).collect();
+    // The list of the design has more than a dozen; an empty one would hold anything.
+    assert!(order.len() > 12 && order.contains(&"step"), "{order:?}");
+    let mut wrong = Vec::new();
+    let mut found = 0;
+    for (at, module) in order.iter().enumerate() {
+        for name in uses_of_module(module) {
+            found += 1;
+            if order.iter().position(|other| *other == name).is_some_and(|below| below > at) {
+                wrong.push(format!("{module} uses {name}, which stands below it"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    // Each module but the first few uses some other: the search works.
+    assert!(found > 2 * order.len(), "only {found} uses found");
+}
+
+#[test]
+fn every_folder_and_file_of_the_source_is_reached() {
+    let lib = std::fs::read_to_string(source().join("lib.rs")).unwrap();
+    let order: BTreeSet<&str> = lib.lines().filter_map(declared).collect();
+    for entry in std::fs::read_dir(source()).unwrap() {
+        let name = entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned();
+        assert!(order.contains(&name[..]) || name == "lib" || name == "main", "{name} is no module of lib.rs");
+    }
+}
+
+#[test]
+fn only_main_sees_the_command_line() {
+    let lib = std::fs::read_to_string(source().join("lib.rs")).unwrap();
+    assert_eq!(lib.lines().filter_map(declared).next_back(), Some("cli"));
+}
+
+#[test]
+fn the_search_sees_groups_and_paths_and_not_tests_or_comments() {
+    let text = "use crate::{a::B, c::{D, e}, f};\nfn g() { crate::h::i() } // crate::j\n#[cfg(test)]\nuse crate::k;\n\
+        #[cfg(test)]\nmod tests {\n    use crate::l;\n}\nuse crate::m;\n";
+    let (kept, files) = without_tests(&format!("{text}#[cfg(test)]\nmod suite;\n"));
+    let names: Vec<String> = used(&kept).into_iter().collect();
+    assert_eq!(names, ["a", "c", "f", "h", "m"]);
+    assert_eq!(files.into_iter().collect::<Vec<_>>(), ["suite"]);
+}

@@ -1,0 +1,144 @@
+//! Bad input: exit code 2, one message with its place, and what would be right.
+
+use crate::common::{Bench, SCENE};
+
+#[test]
+fn bad_scenes_are_named_by_file_line_and_column() {
+    let bench = Bench::empty();
+    // What is replaced by what, and where and how the message begins.
+    let table = [
+        ("degree = 1", "degre = 1", "26:1: unknown key `degre`", "did you mean `degree`"),
+        ("group = \"top\"", "group = \"topp\"", "22:9: the mesh has no group \"topp\"", "did you mean `top`"),
+        ("density = 7800.0", "density = -7800.0", "9:11: `density` is -7800", "greater than 0"),
+        ("degree = 1", "degree = 3\ncfl = 0.4", "27:7: the step is", "scheme.cfl up to"),
+        ("degree = 1", "degree = 1\nsafety = 1.5", "27:10: the step is 1.50", "safety up to 1"),
+        ("to = [1.0, 0.0]", "to = [1.5, 0.0]", "36:6: sample 4 of 5 of the line, at (1.125, 0)", "inside of the body"),
+        ("from = [0.0, 0.0]", "from = [0.0, -0.1]", "35:8: sample 1 of 5", "inside of the body"),
+        ("\"-200\", \"0\"", "\"-200/x^20*0\", \"log(-1)\"", "11:12: the initial velocity", "finite"),
+        ("velocity = [\"-200\", \"0\"]", "deformation = [\"x-0.5\", 0, 0, 1]", "11:15: the initial deformation", "> 0"),
+        ("[mesh]", "[mesh", "2:6: this is not TOML", ""),
+    ];
+    for (old, new, begins, remedy) in table {
+        assert!(SCENE.contains(old), "{old}");
+        bench.write("case.toml", SCENE.replacen(old, new, 1));
+        let message = bench.fail(2, "run case.toml");
+        assert!(message.starts_with(&format!("error: case.toml:{begins}")), "{new}: {message}");
+        assert!(message.contains(remedy), "{new}: {message}");
+        assert!(!bench.path("runs/case/summary.json").exists());
+    }
+}
+
+#[test]
+fn a_state_that_is_sick_only_between_its_nodes_is_bad_input_too() {
+    let bench = Bench::new();
+    // J is .1 at the nodes of degree 2 (.113, .5, .887 of a cell of .25 m), below 0 at the points (.056) outside of them.
+    let deformation = "initial.deformation=[\"1 - 0.9*(4*x - floor(4*x) - 0.5)^2/0.15\", 0, 0, 1]";
+    let message = String::from_utf8(
+        bench
+            .command("run case.toml --set scheme.degree=2 --set cloud.layout=midpoints --set cloud.per_direction=9")
+            .args(["--set", deformation])
+            .output()
+            .unwrap()
+            .stderr,
+    )
+    .unwrap();
+    assert!(message.contains("the initial state is lost: J = ") && message.contains("in cell 1, point"), "{message}");
+}
+
+#[test]
+fn sets_that_are_wrong_are_named() {
+    let bench = Bench::new();
+    for (set, words) in [
+        ("scheme.degre=2", "--set scheme.degre=2: unknown key"),
+        ("scheme.degree", "there is no `=`"),
+        ("boundary.7.kind=free", "has no place"),
+        ("scheme.method=fem", "unknown `method` \"fem\""),
+    ] {
+        let message = bench.fail(2, &format!("run case.toml --set {set}"));
+        assert!(message.contains(words), "{message}");
+    }
+}
+
+#[test]
+fn wrong_arguments_are_bad_input() {
+    let bench = Bench::new();
+    let usage = ["", "runn case.toml", "run", "run case.toml --threads two", "run case.toml --degree 2", "export"];
+    for arguments in usage {
+        assert_eq!(bench.command(arguments).output().unwrap().status.code(), Some(2), "dgmpm {arguments}");
+    }
+    for arguments in [
+        "run none.toml",
+        "run case.toml --threads 0",
+        "mesh rectangle --size 3 --cells 2,2",
+        "mesh rectangle --size -1,3 --cells 2,2",
+        "mesh rectangle --size 1,3 --cells 0,2",
+        "mesh info none.msh",
+        "mesh none.h5",
+        "solve case.toml --mesh none.h5",
+        "solve case.toml --cloud none.h5",
+        "export none",
+        "run .",
+    ] {
+        bench.fail(2, arguments);
+    }
+    assert!(bench.fail(2, "export none").contains("none is not the folder of a run"));
+    assert!(!bench.path("runs").exists());
+}
+
+/// Flips a bit in the middle of a file.
+fn damage(bench: &Bench, name: &str) {
+    let mut bytes = std::fs::read(bench.path(name)).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 16;
+    bench.write(name, bytes);
+}
+
+#[test]
+fn damaged_files_are_refused_by_name() {
+    let bench = Bench::new();
+    bench.run("mesh rectangle --size 1,0.5 --cells 4,2 --out mesh.h5");
+    bench.run("seed case.toml --out cloud.h5");
+    for name in ["mesh.h5", "cloud.h5"] {
+        let option = if name == "mesh.h5" { "--mesh" } else { "--cloud" };
+        let whole = std::fs::read(bench.path(name)).unwrap();
+        damage(&bench, name);
+        let message = bench.fail(2, &format!("solve case.toml {option} {name}"));
+        assert!(message.starts_with(&format!("error: {name}: the file is damaged")), "{message}");
+        // Cut, empty, text, a folder.
+        for bytes in [&whole[..whole.len() / 3], b"", b"x,y\n1,2\n"] {
+            bench.write(name, bytes);
+            assert!(bench.fail(2, &format!("solve case.toml {option} {name}")).contains(name));
+        }
+        std::fs::remove_file(bench.path(name)).unwrap();
+        std::fs::create_dir(bench.path(name)).unwrap();
+        assert!(bench.fail(2, &format!("solve case.toml {option} {name}")).contains(name));
+    }
+    assert!(!bench.path("runs").exists());
+}
+
+#[test]
+fn a_cloud_of_another_mesh_is_refused() {
+    let bench = Bench::new();
+    bench.run("seed case.toml --out cloud.h5");
+    let message = bench.fail(2, "solve case.toml --cloud cloud.h5 --set mesh.rectangle.cells=[4,3]");
+    assert!(message.contains("cloud.h5: the points were seeded on another mesh"), "{message}");
+    let message = bench.fail(2, "run case.toml --set cloud.per_direction=1");
+    assert!(message.contains("cell"), "{message}");
+}
+
+#[test]
+fn export_refuses_what_is_no_whole_run() {
+    let bench = Bench::new();
+    bench.run("run case.toml --set output.0.kind=ledger --set output.0.at=[1e-4]");
+    let message = bench.fail(2, "export runs/case");
+    assert!(message.contains("holds no snapshot") && message.contains("kind = \"fields\""), "{message}");
+    bench.run("run case.toml --force");
+    let snapshot = "runs/case/snapshots/".to_owned();
+    let name = std::fs::read_dir(bench.path(&snapshot)).unwrap().next().unwrap().unwrap().file_name();
+    damage(&bench, &format!("{snapshot}{}", name.to_string_lossy()));
+    let message = bench.fail(2, "export runs/case");
+    assert!(message.contains(&*name.to_string_lossy()) && message.contains("damaged"), "{message}");
+    bench.run("run case.toml --force");
+    damage(&bench, "runs/case/mesh.h5");
+    assert!(bench.fail(2, "export runs/case").contains("mesh.h5: the file is damaged"));
+}

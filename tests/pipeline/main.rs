@@ -1,0 +1,8 @@
+//! The program as its users have it: every command on files in a folder, what it says and what it leaves.
+
+mod common;
+mod errors;
+mod stages;
+mod stops;
+mod times;
+mod variants;
