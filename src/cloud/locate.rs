@@ -1,21 +1,311 @@
-//! stand-in
+//! Finds the cell of any point: a bounding volume hierarchy over the cells, then the inverse map.
+
+use rayon::prelude::*;
+
+use super::Cloud;
 use crate::mesh::{Mesh, map};
-/// stand-in
-pub struct Locator<'a>(&'a Mesh);
-impl<'a> Locator<'a> {
-    /// stand-in
-    pub fn new(m: &'a Mesh) -> Self {
-        Self(m)
-    }
-    /// stand-in
-    pub fn find(&self, x: [f64; 2]) -> Option<(usize, [f64; 2])> {
-        (0..self.0.cells.len()).find_map(|c| {
-            let xi = map::parent(&self.0.corners(c), x)?;
-            xi.iter().all(|v| (-1e-12..=1.0 + 1e-12).contains(v)).then_some((c, xi))
-        })
+
+/// Points this far outside of a cell, in parent coordinates, still belong to it: corners and edges are
+/// computed to a few 1e-16, and a point on the outer boundary must not be lost.
+const TOLERANCE: f64 = 1e-12;
+
+/// Cells in a leaf of the hierarchy. CPU s for 1e6 points in 1e6 cells, in random order and row by row: 2.7 and .67 with 2,
+/// 2.1 and .63 with 4, 2.2 and .82 with 8, 2.2 and 1.2 with 16.
+const LEAF: usize = 4;
+
+/// Points that lie in no cell.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{count} point(s) of the cloud lie outside the mesh, the first is point {first} at ({}, {}); the mesh fills [{}, {}] x [{}, {}]",
+    .at[0], .at[1], .extent[0][0], .extent[1][0], .extent[0][1], .extent[1][1])]
+pub struct Outside {
+    /// How many.
+    pub count: usize,
+    /// Index of the first, from 0.
+    pub first: usize,
+    /// Where it lies, in m.
+    pub at: [f64; 2],
+    /// Lower left and upper right corner of the mesh, in m.
+    pub extent: [[f64; 2]; 2],
+}
+
+impl From<Outside> for crate::Error {
+    fn from(outside: Outside) -> Self {
+        let remedy =
+            "give points inside the mesh, in metres and in the initial configuration, or a mesh that covers them";
+        crate::Error::input(outside.to_string(), remedy)
     }
 }
-/// stand-in
-pub fn from_points(_m: &Mesh, _p: &[[f64; 2]]) -> crate::error::Result<super::Cloud> {
-    Ok(super::Cloud::default())
+
+/// A box from its lower left to its upper right corner.
+#[derive(Debug, Clone, Copy)]
+struct Extent {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Extent {
+    const EMPTY: Extent = Extent { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+
+    fn join(self, x: [f64; 2], y: [f64; 2]) -> Self {
+        let low = [0, 1].map(|i| self.low[i].min(x[i]).min(y[i]));
+        let high = [0, 1].map(|i| self.high[i].max(x[i]).max(y[i]));
+        Extent { low, high }
+    }
+
+    fn has(&self, x: [f64; 2]) -> bool {
+        (self.low[0] <= x[0] && x[0] <= self.high[0]) && (self.low[1] <= x[1] && x[1] <= self.high[1])
+    }
+}
+
+/// A cell as the hierarchy keeps it.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    corners: map::Corners,
+    cell: usize,
+    /// In parent coordinates.
+    tolerance: f64,
+}
+
+impl Entry {
+    fn new(corners: map::Corners, cell: usize) -> Self {
+        let far = corners.iter().flatten().fold(0.0, |far: f64, x| far.max(x.abs()));
+        // Far from the origin coordinates are rounded by eps |x|: in parent coordinates that, over h.
+        let tolerance = TOLERANCE.max(16.0 * f64::EPSILON * far / map::h_e(&corners));
+        Self { corners, cell, tolerance }
+    }
+
+    fn extent(&self) -> Extent {
+        let tight = self.corners.iter().fold(Extent::EMPTY, |extent, &x| extent.join(x, x));
+        let margin = [0, 1].map(|i| 2.0 * self.tolerance * (tight.high[i] - tight.low[i]));
+        Extent {
+            low: [tight.low[0] - margin[0], tight.low[1] - margin[1]],
+            high: [tight.high[0] + margin[0], tight.high[1] + margin[1]],
+        }
+    }
+
+    /// Parent coordinates of a point that belongs to the closed cell.
+    fn holds(&self, x: [f64; 2]) -> Option<[f64; 2]> {
+        let inside = |xi: &f64| (-self.tolerance..=1.0 + self.tolerance).contains(xi);
+        let xi = map::parent(&self.corners, x)?;
+        xi.iter().all(inside).then(|| xi.map(|xi| xi.clamp(0.0, 1.0)))
+    }
+}
+
+/// A node of the hierarchy; its left child stands next to it.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    extent: Extent,
+    right: usize,
+}
+
+/// Finds cells by position. It keeps its own copy of the corners.
+#[derive(Debug, Clone)]
+pub struct Locator {
+    entries: Vec<Entry>,
+    /// A balanced binary tree in depth-first order, each node over a run of entries that its children halve.
+    nodes: Vec<Node>,
+}
+
+impl Locator {
+    /// A locator of a mesh with convex cells ([`Mesh::checked`]).
+    pub fn new(mesh: &Mesh) -> Self {
+        let mut entries: Vec<_> = (0..mesh.cells.len()).map(|cell| Entry::new(mesh.corners(cell), cell)).collect();
+        let mut nodes = Vec::new();
+        build(&mut entries, &mut nodes);
+        Self { entries, nodes }
+    }
+
+    /// The cell of a point and its parent coordinates in [0, 1]^2, or `None` outside of the mesh.
+    ///
+    /// Cells are closed and share their edges: of all cells that a point on an edge or corner touches, the one
+    /// with the lowest index has it.
+    pub fn find(&self, x: [f64; 2]) -> Option<(usize, [f64; 2])> {
+        let mut best: Option<(usize, [f64; 2])> = None;
+        // Nodes still to be seen, with their entries: at most one beside each level of the tree, and levels are
+        // fewer than the bits of a count.
+        let mut stack = [(0, 0, 0); usize::BITS as usize + 1];
+        stack[0] = (0, 0, self.entries.len());
+        let mut open = 1;
+        while open > 0 {
+            open -= 1;
+            let (node, a, b) = stack[open];
+            let Node { extent, right } = self.nodes[node];
+            if !extent.has(x) {
+                continue;
+            }
+            if b - a <= LEAF {
+                for entry in &self.entries[a..b] {
+                    if best.is_none_or(|(cell, _)| entry.cell < cell) {
+                        best = entry.holds(x).map(|xi| (entry.cell, xi)).or(best);
+                    }
+                }
+                continue;
+            }
+            let middle = a.midpoint(b);
+            stack[open] = (node + 1, a, middle);
+            stack[open + 1] = (right, middle, b);
+            open += 2;
+        }
+        best
+    }
+}
+
+fn build(entries: &mut [Entry], nodes: &mut Vec<Node>) {
+    let join = |extent: Extent, entry: &Entry| {
+        let own = entry.extent();
+        extent.join(own.low, own.high)
+    };
+    let extent = entries.iter().fold(Extent::EMPTY, join);
+    let node = nodes.len();
+    nodes.push(Node { extent, right: 0 });
+    if entries.len() > LEAF {
+        let axis = usize::from(extent.high[1] - extent.low[1] > extent.high[0] - extent.low[0]);
+        let key = |entry: &Entry| entry.corners.iter().map(|x| x[axis]).sum::<f64>();
+        let middle = entries.len() / 2;
+        entries.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cell.cmp(&b.cell)));
+        let (left, right) = entries.split_at_mut(middle);
+        build(left, nodes);
+        nodes[node].right = nodes.len();
+        build(right, nodes);
+    }
+}
+
+/// The cloud of points given by their positions X, in m, and for each point of the cloud its index in `points`.
+/// Points of a cell keep their order.
+pub fn from_points(mesh: &Mesh, locator: &Locator, points: &[[f64; 2]]) -> Result<(Cloud, Vec<usize>), Outside> {
+    let found: Vec<_> = points.par_iter().map(|&x| locator.find(x)).collect();
+    if let Some(first) = found.iter().position(Option::is_none) {
+        let count = found.iter().filter(|f| f.is_none()).count();
+        let extent = mesh.nodes.iter().fold(Extent::EMPTY, |extent, &x| extent.join(x, x));
+        return Err(Outside { count, first, at: points[first], extent: [extent.low, extent.high] });
+    }
+    let mut located: Vec<_> =
+        found.into_iter().flatten().enumerate().map(|(index, (cell, xi))| (cell, index, xi)).collect();
+    located.sort_unstable_by_key(|&(cell, index, _)| (cell, index));
+    let mut first = vec![0; mesh.cells.len() + 1];
+    located.iter().for_each(|(cell, _, _)| first[cell + 1] += 1);
+    for cell in 0..mesh.cells.len() {
+        first[cell + 1] += first[cell];
+    }
+    let cloud = Cloud { first, xi: located.iter().map(|&(_, _, xi)| xi).collect() };
+    Ok((cloud, located.iter().map(|&(_, index, _)| index).collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloud::{Layout, seed};
+    use crate::mesh::rectangle;
+
+    /// A 7 x 5 rectangle with its inner nodes moved: all cells are distorted, none is concave.
+    fn distorted() -> Mesh {
+        let mut mesh = rectangle([7.0, 5.0], [7, 5]).unwrap();
+        for (k, x) in mesh.nodes.iter_mut().enumerate() {
+            let inner = x[0] % 7.0 != 0.0 && x[1] % 5.0 != 0.0;
+            if inner {
+                x[0] += 0.3 * (k as f64 * 1.7).sin();
+                x[1] += 0.3 * (k as f64 * 2.9).cos();
+            }
+        }
+        mesh.checked().unwrap()
+    }
+
+    #[test]
+    fn trees_of_every_size_find_all_their_cells() {
+        for n in 1..50 {
+            let locator = Locator::new(&rectangle([n as f64, 1.0], [n, 1]).unwrap());
+            assert!((0..n).all(|cell| locator.find([cell as f64 + 0.25, 0.5]).map(|f| f.0) == Some(cell)));
+        }
+        assert_eq!(Locator::new(&Mesh::default()).find([0.0, 0.0]), None);
+    }
+
+    #[test]
+    fn points_inside_cells_are_found_with_their_parent_coordinates() {
+        let mesh = distorted();
+        let locator = Locator::new(&mesh);
+        let cloud = seed(Layout::Jitter { seed: 4, amount: 0.3 }, 4, mesh.cells.len());
+        for cell in 0..mesh.cells.len() {
+            for &xi in cloud.of(cell) {
+                let (found, at) = locator.find(map::position(&mesh.corners(cell), xi)).unwrap();
+                // Newton ends at rounding, amplified by 1 / det of these cells, above 0.1.
+                assert!(found == cell && (at[0] - xi[0]).abs().max((at[1] - xi[1]).abs()) < 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn points_on_edges_and_corners_belong_to_the_lowest_cell_that_they_touch() {
+        for mesh in [distorted(), rectangle([7.0, 5.0], [7, 5]).unwrap()] {
+            let locator = Locator::new(&mesh);
+            for cell in 0..mesh.cells.len() {
+                for t in [0.0, 0.3, 0.5, 1.0] {
+                    for xi in [[0.0, t], [1.0, t], [t, 0.0], [t, 1.0]] {
+                        let x = map::position(&mesh.corners(cell), xi);
+                        let touches = |&c: &usize| {
+                            map::parent(&mesh.corners(c), x)
+                                .is_some_and(|xi| xi.iter().all(|xi| (-1e-9..=1.0 + 1e-9).contains(xi)))
+                        };
+                        let lowest = (0..mesh.cells.len()).find(touches);
+                        assert_eq!(locator.find(x).map(|f| f.0), lowest, "{x:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_outer_boundary_belongs_to_the_mesh_up_to_1e_12_and_not_beyond() {
+        let locator = Locator::new(&rectangle([3.0, 3.0], [30, 30]).unwrap());
+        assert_eq!(locator.find([3.0 + 0.5e-13, 3.0]), Some((899, [1.0, 1.0])));
+        assert_eq!(locator.find([-0.5e-13, 0.05]).map(|f| f.0), Some(0));
+        // Cells are 0.1 m wide: 1e-12 of that.
+        assert_eq!(locator.find([3.0 + 1e-11, 1.5]), None);
+        assert_eq!(locator.find([f64::NAN, 0.0]), None);
+        assert_eq!(locator.find([f64::INFINITY, 0.0]), None);
+    }
+
+    #[test]
+    fn points_on_edges_are_not_lost_far_from_the_origin() {
+        let mut mesh = rectangle([1e-3, 1e-3], [10, 10]).unwrap();
+        mesh.nodes.iter_mut().flatten().for_each(|x| *x += 1234.5678);
+        let locator = Locator::new(&mesh);
+        for cell in 0..100 {
+            for t in [0.0, 0.123, 0.77, 1.0] {
+                assert!(locator.find(map::position(&mesh.corners(cell), [t, 1.0])).is_some());
+                assert!(locator.find(map::position(&mesh.corners(cell), [1.0, t])).is_some());
+            }
+        }
+    }
+
+    #[test]
+    fn a_seeded_cloud_shuffled_comes_back_from_its_positions() {
+        let mesh = distorted();
+        let cloud = seed(Layout::Midpoints, 3, mesh.cells.len());
+        let mut points: Vec<[f64; 2]> = (0..mesh.cells.len())
+            .flat_map(|c| cloud.of(c).iter().map(|&xi| map::position(&mesh.corners(c), xi)).collect::<Vec<_>>())
+            .collect();
+        points.reverse();
+        let (found, order) = from_points(&mesh, &Locator::new(&mesh), &points).unwrap();
+        assert_eq!(found.first, cloud.first);
+        // Points of a cell keep their order among each other, which is the reversed one here.
+        for cell in 0..mesh.cells.len() {
+            let mut xi = found.of(cell).to_vec();
+            xi.reverse();
+            for (a, b) in xi.iter().flatten().zip(cloud.of(cell).iter().flatten()) {
+                // Newton ends at rounding, amplified by 1 / det of these cells, above 0.1.
+                assert!((a - b).abs() < 1e-14);
+            }
+        }
+        let last = points.len() - 1;
+        assert_eq!(order[..9], [8, 7, 6, 5, 4, 3, 2, 1, 0].map(|k| last - k));
+    }
+
+    #[test]
+    fn points_outside_are_counted_and_the_first_is_named() {
+        let mesh = rectangle([1.0, 1.0], [2, 2]).unwrap();
+        let points = [[0.5, 0.5], [1.5, 0.5], [0.1, 0.2], [0.5, f64::NAN]];
+        let outside = from_points(&mesh, &Locator::new(&mesh), &points).unwrap_err();
+        assert_eq!(outside, Outside { count: 2, first: 1, at: [1.5, 0.5], extent: [[0.0, 0.0], [1.0, 1.0]] });
+        assert_eq!(crate::Error::from(outside).exit_code(), 2);
+    }
 }

@@ -1,7 +1,9 @@
 //! The cloud of material points, sorted by cell.
 
+pub mod locate;
 pub mod seed;
 
+pub use locate::{Locator, Outside, from_points};
 pub use seed::{Layout, default_layout, seed, seed_by};
 
 /// Material points: for each cell a run of points with their parent coordinates.
@@ -29,5 +31,3 @@ impl Cloud {
         self.xi.is_empty()
     }
 }
-/// stand-in
-pub mod locate;

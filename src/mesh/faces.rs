@@ -1,6 +1,6 @@
 //! Face topology from shared nodes.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use super::{Error, FACE_CORNERS, Link, Mesh};
 
@@ -117,26 +117,45 @@ fn no_duplicates(mesh: &Mesh, free: &[Face], untagged: &[Face]) -> Result<(), Er
 
     let used: Vec<usize> = (0..mesh.nodes.len()).filter(|&n| owner[n] != usize::MAX).collect();
     let reach = SAME_PLACE * used.iter().map(|&n| shortest[n]).fold(0.0, f64::max);
-    let mut grid = Grid::new(16.0 * reach, used.len());
-    let (mut count, mut first) = (0, None);
-    for &node in &used {
-        let x = mesh.nodes[node];
-        grid.near(x, x, reach, |other| {
-            let close = distance(x, mesh.nodes[other]) <= SAME_PLACE * shortest[node].min(shortest[other]);
-            if close && !(may_share[node] && may_share[other]) {
-                count += 1;
-                first.get_or_insert((other, node));
-            }
-        });
-        grid.insert(x, node);
-    }
-    match first {
-        Some((a, b)) => {
+    let close = |a: usize, b: usize| {
+        let limit = SAME_PLACE * shortest[a].min(shortest[b]);
+        distance(mesh.nodes[a], mesh.nodes[b]) <= limit && !(may_share[a] && may_share[b])
+    };
+    let pairs = close_pairs(mesh, &used, 16.0 * reach, close);
+    match pairs.first() {
+        Some(&(a, b)) => {
             let cells = [a, b].map(|node| mesh.number(owner[node]));
-            Err(Error::Duplicate { count, at: mesh.nodes[b], cells })
+            Err(Error::Duplicate { count: pairs.len(), at: mesh.nodes[a], cells })
         }
         None => Ok(()),
     }
+}
+
+/// All pairs of nodes that are `close`, which none further apart than `width / 2` may be.
+///
+/// Nodes are sorted by square buckets of that width, four times with buckets shifted by one half in x, in y and in
+/// both, so that each pair shares a bucket at least once.
+fn close_pairs(
+    mesh: &Mesh,
+    used: &[usize],
+    width: f64,
+    close: impl Fn(usize, usize) -> bool,
+) -> BTreeSet<(usize, usize)> {
+    let mut pairs = BTreeSet::new();
+    let mut sorted: Vec<([i64; 2], usize)> = Vec::with_capacity(used.len());
+    for shift in [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5], [0.5, 0.5]] {
+        // `as` saturates, so coordinates that are huge or not finite share the outermost buckets.
+        let bucket = |node: usize| [0, 1].map(|i| (mesh.nodes[node][i] / width + shift[i]).floor() as i64);
+        sorted.clear();
+        sorted.extend(used.iter().map(|&node| (bucket(node), node)));
+        sorted.sort_unstable();
+        for same in sorted.chunk_by(|a, b| a.0 == b.0) {
+            for (k, &(_, a)) in same.iter().enumerate() {
+                pairs.extend(same[k + 1..].iter().map(|&(_, b)| (a, b)).filter(|&(a, b)| close(a, b)));
+            }
+        }
+    }
+    pairs
 }
 
 /// Refuses boundary nodes on the inside of a boundary edge that bears no group.

@@ -42,6 +42,10 @@ pub fn inverse(m: &[[f64; 2]; 2]) -> [[f64; 2]; 2] {
 /// They lie outside [0, 1]^2 where the point lies outside the cell. `None` where the iteration finds no solution:
 /// for a convex cell this happens only to points outside (beyond the fold of the map).
 pub fn parent(corners: &Corners, x: [f64; 2]) -> Option<[f64; 2]> {
+    // Relative to a corner, so that cells far from the origin lose no digits.
+    let origin = corners[0];
+    let shift = |x: [f64; 2]| [x[0] - origin[0], x[1] - origin[1]];
+    let (corners, x) = (&corners.map(shift), shift(x));
     let gap = |xi: [f64; 2]| {
         let at = position(corners, xi);
         [x[0] - at[0], x[1] - at[1]]

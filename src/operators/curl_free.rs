@@ -2,13 +2,12 @@
 
 use super::matrix::{Matrix, Pool, classes};
 use super::{Blocks, Line};
-use crate::error::Error;
 use crate::lane::F8;
 use crate::mesh::{Mesh, map};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-/// Singular values below this share of the largest are rounding: the set of columns is rank-deficient by construction,
+/// Pivots below this share of the largest are rounding: the set of columns is rank-deficient by construction,
 /// with ranks 5, 10, 17 of 8, 18, 32 on affine cells and 6, 12, 20 on others (N = 1, 2, 3).
 const RANK_TOLERANCE: f64 = 1e-9;
 
@@ -27,10 +26,7 @@ pub struct CurlFree {
 
 impl CurlFree {
     /// Builds C for all blocks.
-    ///
-    /// # Errors
-    /// Where a singular value decomposition does not converge, which a checked mesh does not cause.
-    pub fn matrices(mesh: &Mesh, blocks: &Blocks, line: &Line) -> Result<CurlPool, Error> {
+    pub fn matrices(mesh: &Mesh, blocks: &Blocks, line: &Line) -> CurlPool {
         let size = mesh.nodes.iter().flatten().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
         // Cells whose edges agree to 1e-12 of the mesh are congruent up to rounding of the node coordinates.
         let key = |cell: usize| {
@@ -38,15 +34,12 @@ impl CurlFree {
             [1, 2, 3].map(|k| [0, 1].map(|i| ((c[k][i] - c[0][i]) / (size * 1e-12)).round() as i64))
         };
         let (class, examples) = classes(mesh.cells.len(), key);
-        let all = examples
-            .par_iter()
-            .map(|&cell| complement(&mesh.corners(cell), line))
-            .collect::<Result<Vec<_>, Error>>()?;
+        let all: Vec<_> = examples.par_iter().map(|&cell| complement(&mesh.corners(cell), line)).collect();
         let columns = all.iter().map(|c| c.columns).max().unwrap_or(0);
-        Ok(Pool::new(&blocks.cells, &class, all, |lanes| {
+        Pool::new(&blocks.cells, &class, all, |lanes| {
             let padded = lanes.map(|c| widen(c, columns));
             Matrix::interleave(padded.each_ref())
-        }))
+        })
     }
 
     /// Bytes held.
@@ -63,11 +56,11 @@ fn widen(c: &Matrix<f64>, columns: usize) -> Matrix<f64> {
 }
 
 /// C of one cell: W^(-1/2) times an orthonormal basis of the complement of W^(1/2) times the gradients.
-fn complement(corners: &[[f64; 2]; 4], line: &Line) -> Result<Matrix<f64>, Error> {
+fn complement(corners: &[[f64; 2]; 4], line: &Line) -> Matrix<f64> {
     let n = line.m * line.m;
     let root: Vec<f64> = (0..n).map(|a| mass(corners, line, a).sqrt()).collect();
     let gradients = gradients(corners, line);
-    // Square, so that the left singular vectors span the whole space.
+    // At least square (zero columns), so that Q spans the whole space.
     let size = (2 * n).max(gradients.len());
     let mut matrix = DMatrix::zeros(2 * n, size);
     for (k, column) in gradients.iter().enumerate() {
@@ -77,13 +70,12 @@ fn complement(corners: &[[f64; 2]; 4], line: &Line) -> Result<Matrix<f64>, Error
             matrix[(r, k)] = g / norm;
         }
     }
-    let svd = matrix.try_svd(true, false, f64::EPSILON, 0);
-    let (values, u) = svd.and_then(|svd| Some((svd.singular_values, svd.u?))).ok_or_else(|| {
-        Error::input("the curl-free projection of a cell could not be built", "check the shape of the mesh's cells")
-    })?;
-    let outside: Vec<usize> = (0..2 * n).filter(|&k| values[k] <= RANK_TOLERANCE * values.max()).collect();
+    let qr = matrix.col_piv_qr();
+    let (u, r) = (qr.q(), qr.r());
+    // Pivoted: the diagonal of R falls, and columns of Q behind the rank span the complement.
+    let outside: Vec<usize> = (0..2 * n).filter(|&k| r[(k, k)].abs() <= RANK_TOLERANCE * r[(0, 0)].abs()).collect();
     let entries = (0..2 * n).flat_map(|r| outside.iter().map(move |&k| (r, k))).map(|(r, k)| u[(r, k)] / root[r % n]);
-    Ok(Matrix::new(2 * n, outside.len(), entries.collect()))
+    Matrix::new(2 * n, outside.len(), entries.collect())
 }
 
 fn mass(corners: &[[f64; 2]; 4], line: &Line, a: usize) -> f64 {

@@ -23,7 +23,7 @@ impl Stored {
     /// A cell whose points cannot carry Q_N.
     pub fn build(mesh: &Mesh, blocks: &Blocks, line: &Line, needs: &Needs) -> Result<Self, Error> {
         let points = needs.sampling.map(|s| Points::matrices(mesh, blocks, line, s)).transpose()?;
-        let curl_free = needs.curl_free.then(|| CurlFree::matrices(mesh, blocks, line)).transpose()?;
+        let curl_free = needs.curl_free.then(|| CurlFree::matrices(mesh, blocks, line));
         Ok(Self { points, curl_free })
     }
 }

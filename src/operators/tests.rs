@@ -1,1 +1,165 @@
+//! Exact on polynomials, on distorted cells, for any cloud.
+use super::*;
+use crate::cloud::{Cloud, seed};
+use crate::lane::LANES;
+use crate::mesh::{links, map, rectangle};
 
+/// A 3 x 3 mesh of the unit square whose inner nodes are moved by up to a fifth of a cell: no two cells congruent.
+fn distorted() -> Mesh {
+    let mut mesh = rectangle([1.0, 1.0], [3, 3]).unwrap();
+    for (i, x) in mesh.nodes.iter_mut().enumerate() {
+        let inside = x.iter().all(|x| *x > 0.0 && *x < 1.0);
+        let angle = i as f64 * 2.4;
+        if inside {
+            *x = [x[0] + angle.cos() / 15.0, x[1] + angle.sin() / 15.0];
+        }
+    }
+    mesh
+}
+
+fn build(mesh: &Mesh, degree: usize, cloud: &Cloud) -> Operators {
+    let needs = Needs { degree, sampling: Some(Sampling::Cloud(cloud)), curl_free: true };
+    Operators::build(mesh, &links(mesh).unwrap(), &vec![0; mesh.cells.len()], &needs).unwrap()
+}
+
+/// Entry of a lane of a matrix that may be shared.
+fn entry(share: Share, shared: &[Matrix<f64>], own: &[Matrix<F8>], lane: usize, r: usize, c: usize) -> f64 {
+    match share {
+        Share::Shared(k) => shared[k].row(r)[c],
+        Share::Own(k) => own[k].row(r)[c].0[lane],
+    }
+}
+
+use crate::lane::F8;
+
+#[test]
+fn masses_sum_to_the_area_and_normals_close_each_cell() {
+    let mesh = distorted();
+    let operators = build(&mesh, 2, &seed::seed(seed::Layout::Gauss, 3, 9));
+    let geometry = &operators.geometry;
+    for (cell, &(block, lane)) in operators.blocks.slot.iter().enumerate() {
+        let mass: f64 = (0..9).map(|a| geometry.mass[block * 9 + a].0[lane]).sum();
+        // Exact quadrature: rounding of a sum of 9 numbers of size .01.
+        assert!((mass - map::area(&mesh.corners(cell))).abs() < 1e-16);
+        for axis in 0..2 {
+            let face = |f: usize| geometry.normal[(4 * block + f) * 2 + axis].0[lane] * geometry.length[4 * block + f].0[lane];
+            // The boundary of a cell is closed: four edges of size .3.
+            assert!((0..4).map(face).sum::<f64>().abs() < 2e-16);
+        }
+    }
+}
+
+#[test]
+fn transfer_and_slopes_are_exact_on_q_n_for_any_cloud() {
+    let mesh = distorted();
+    for degree in 1..=4 {
+        let cloud = seed::seed(seed::Layout::Jitter { seed: 3, amount: 0.3 }, degree + 2, 9);
+        let operators = build(&mesh, degree, &cloud);
+        let points = operators.points.as_ref().unwrap();
+        let pool = &points.pool;
+        let power = degree as i32;
+        let field = |xi: [f64; 2]| xi[0].powi(power) * xi[1].powi(power) - 0.3 * xi[0];
+        let slope = |xi: [f64; 2]| power as f64 * xi[0].powi(power - 1) * xi[1].powi(power) - 0.3;
+        for (cell, &(block, lane)) in operators.blocks.slot.iter().enumerate() {
+            let all = |k: usize| -> (Vec<Matrix<f64>>, Vec<Matrix<F8>>) {
+                let shared = pool.shared.iter().map(|m| m.matrices()[k].clone()).collect();
+                (shared, pool.own.iter().map(|m| m.matrices()[k].clone()).collect())
+            };
+            let apply = |k: usize, rows: usize, input: &[f64]| -> Vec<f64> {
+                let (shared, own) = all(k);
+                let at = |r: usize, c: usize| entry(pool.share[block], &shared, &own, lane, r, c);
+                (0..rows).map(|r| input.iter().enumerate().map(|(c, x)| at(r, c) * x).sum()).collect()
+            };
+            let at_points: Vec<f64> = cloud.of(cell).iter().map(|&xi| field(xi)).collect();
+            let at_nodes: Vec<f64> = operators.line.nodes().into_iter().map(field).collect();
+            let (np, n) = (at_points.len(), at_nodes.len());
+            // Rounding times the condition of the fit (below 1e3) and, for slopes, of the derivative (below 1e2).
+            let close = |a: &[f64], b: &[f64], bound: f64| a.iter().zip(b).all(|(a, b)| (a - b).abs() < bound);
+            assert!(close(&apply(0, n, &at_points), &at_nodes, 1e-12), "P2G {degree}");
+            assert!(close(&apply(1, np, &at_nodes), &at_points, 1e-13), "G2P {degree}");
+            let slopes: Vec<f64> = cloud.of(cell).iter().map(|&xi| slope(xi)).collect();
+            assert!(close(&apply(2, np, &at_points), &slopes, 1e-10), "slope {degree}");
+        }
+    }
+}
+
+#[test]
+fn the_curl_free_complement_is_orthonormal_and_blind_to_gradients() {
+    for (mesh, ranks) in [(rectangle([2.0, 1.0], [2, 2]).unwrap(), [5, 10, 17]), (distorted(), [6, 12, 20])] {
+        for degree in 1..=3 {
+            let cloud = seed::seed(seed::Layout::Midpoints, degree + 1, mesh.cells.len());
+            let operators = build(&mesh, degree, &cloud);
+            let (line, n) = (&operators.line, operators.nodes());
+            let pool = &operators.curl_free.as_ref().unwrap().pool;
+            for (cell, &(block, lane)) in operators.blocks.slot.iter().enumerate() {
+                let columns = match pool.share[block] {
+                    Share::Shared(k) => pool.shared[k].columns,
+                    Share::Own(k) => pool.own[k].columns,
+                };
+                assert_eq!(2 * n - columns, ranks[degree - 1], "degree {degree}");
+                let c = |r: usize, k: usize| entry(pool.share[block], &pool.shared, &pool.own, lane, r, k);
+                let mass = |r: usize| operators.geometry.mass[block * n + r % n].0[lane];
+                let against = |field: &dyn Fn(usize, [f64; 2]) -> f64, k: usize| -> f64 {
+                    (0..2 * n)
+                        .map(|r| c(r, k) * mass(r) * field(r / n, map::position(&mesh.corners(cell), line.basis.node_2d(r % n))))
+                        .sum()
+                };
+                for k in 0..columns {
+                    let norm: f64 = (0..2 * n).map(|r| c(r, k) * c(r, k) * mass(r)).sum();
+                    // Columns of an orthogonal matrix of order 32: rounding of the decomposition.
+                    assert!((norm - 1.0).abs() < 1e-13);
+                    let power = degree as i32;
+                    // The gradient of x^(N+1) + x^N y, and uniform F: weights sum to 1/mass ~ 10, so 1e-13 is rounding.
+                    let gradient = |axis: usize, x: [f64; 2]| match axis {
+                        0 => (power + 1) as f64 * x[0].powi(power) + power as f64 * x[0].powi(power - 1) * x[1],
+                        _ => x[0].powi(power),
+                    };
+                    assert!(against(&gradient, k).abs() < 1e-13, "{degree} {:e}", against(&gradient, k));
+                    assert!(against(&|axis, _| axis as f64 + 0.5, k).abs() < 1e-13);
+                    // The mean of each row is kept: each column of C is orthogonal to uniform fields of each axis.
+                    assert!(against(&|axis, _| if axis == 0 { 1.0 } else { 0.0 }, k).abs() < 1e-13);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn blocks_keep_every_cell_once_and_neighbours_point_back() {
+    let mesh = distorted();
+    let links = links(&mesh).unwrap();
+    let material = [0, 1, 0, 1, 1, 0, 0, 0, 1];
+    let blocks = Blocks::new(&material, &links);
+    let values: Vec<f64> = (0..18).map(f64::from).collect();
+    assert_eq!(blocks.unpack(&blocks.pack(&values, 2, |_| -1.0), 2), values);
+    assert_eq!(blocks.count.iter().sum::<usize>(), 9);
+    for block in 0..blocks.len() {
+        for face in 0..4 {
+            for lane in 0..LANES {
+                match blocks.neighbours[block][face][lane] {
+                    Neighbour::Cell(across) | Neighbour::Interface(across, _) => {
+                        let back = blocks.neighbours[across.face / 4][across.face % 4][across.lane];
+                        let (Neighbour::Cell(back) | Neighbour::Interface(back, _)) = back else { panic!("one-sided") };
+                        assert_eq!((back.face, back.lane, back.flip), (4 * block + face, lane, across.flip));
+                    }
+                    Neighbour::Boundary(_) => assert!(lane < blocks.count[block]),
+                    Neighbour::Padding => assert!(lane >= blocks.count[block]),
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn congruent_cells_share_matrices_and_a_cell_that_cannot_carry_q_n_is_named() {
+    let mesh = rectangle([3.0, 3.0], [4, 4]).unwrap();
+    let operators = build(&mesh, 2, &seed::seed(seed::Layout::Paper, 3, 16));
+    assert_eq!(operators.points.as_ref().unwrap().pool.shared.len(), 1);
+    assert_eq!(operators.points.as_ref().unwrap().pool.own.len(), 0);
+    assert_eq!(operators.curl_free.as_ref().unwrap().pool.shared.len(), 1);
+    let mut cloud = seed::seed(seed::Layout::Paper, 3, 16);
+    cloud.xi[9 * 5 + 1] = cloud.xi[9 * 5];
+    let needs = Needs { degree: 2, sampling: Some(Sampling::Cloud(&cloud)), curl_free: false };
+    let error = Operators::build(&mesh, &links(&mesh).unwrap(), &[0; 16], &needs).unwrap_err().to_string();
+    assert!(error.contains(&format!("cell {}", mesh.number(5))) && error.contains("rank 8"), "{error}");
+}

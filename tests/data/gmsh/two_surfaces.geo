@@ -1,0 +1,26 @@
+// Two materials with one interface, and a name with quotes: two_surfaces_*.msh are this mesh in each format.
+Point(1) = {0, 0, 0, 0.4};
+Point(2) = {1, 0, 0, 0.3};
+Point(3) = {2, 0, 0, 0.4};
+Point(4) = {2, 1, 0, 0.4};
+Point(5) = {1.2, 1, 0, 0.3};
+Point(6) = {0, 1, 0, 0.4};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 5};
+Line(5) = {5, 6};
+Line(6) = {6, 1};
+Line(7) = {2, 5};
+Curve Loop(1) = {1, 7, 5, 6};
+Curve Loop(2) = {2, 3, 4, -7};
+Plane Surface(1) = {1};
+Plane Surface(2) = {2};
+Mesh.Algorithm = 8;
+Mesh.RecombinationAlgorithm = 3;
+Recombine Surface {1, 2};
+Physical Curve("loaded", 10) = {6};
+Physical Curve("free", 11) = {1, 2, 3, 4, 5};
+Physical Curve("interface", 12) = {7};
+Physical Surface("steel", 20) = {1};
+Physical Surface("soft", 21) = {2};
