@@ -76,7 +76,7 @@ fn write(mesh: &Mesh, to: &To, default: &Path) -> Result<()> {
     let out = to.out.as_deref().unwrap_or(default);
     keep(out, to.force)?;
     if out.extension().is_some_and(|ending| ending == "msh") {
-        gmsh::write(out, mesh)?;
+        gmsh::write(mesh, out)?;
     } else {
         mesh_file::write_mesh(out, mesh)?;
     }

@@ -1,3 +1,24 @@
-//! (to come)
+//! The files of the pipeline, and the files that other programs read.
+//!
+//! Between the steps of the pipeline everything travels in HDF5 ([`store`]): the mesh ([`mesh_file`]), the cloud
+//! ([`cloud_file`]), the matrices ([`operators_file`]) and the state at a time ([`snapshot`]). Meshes come from Gmsh
+//! ([`gmsh`]). For other programs there is an output model ([`grid`]) that knows nothing of a solver, and one writer per
+//! format: [`vtu`], [`pvd`], [`xdmf`], [`csv`].
+//!
+//! A file appears under its name only when it is whole ([`pending`]); what is read is checked before it is used.
 
+pub mod cloud_file;
+pub mod csv;
 pub mod gmsh;
+pub mod grid;
+pub mod hash;
+pub mod hdf5;
+pub mod mesh_file;
+pub mod operators_file;
+pub mod pending;
+pub mod pvd;
+pub mod seal;
+pub mod snapshot;
+pub mod store;
+pub mod vtu;
+pub mod xdmf;

@@ -290,5 +290,8 @@ pub fn read_cloud(path: &Path, mesh: &Mesh) -> Result<Cloud> {
             _ => return Err(Error::at(Place::line(path, number + 1, 1), "this is not a point", "give x, y in m")),
         }
     }
-    cloud::locate::from_points(mesh, &points)
+    let located = cloud::from_points(mesh, &cloud::Locator::new(mesh), &points);
+    located
+        .map(|(cloud, _)| cloud)
+        .map_err(|why| Error::at(Place::file(path), why.to_string(), "give points inside of the mesh, in m"))
 }
