@@ -109,9 +109,8 @@ const BAD: &[Row] = &[
     ("degree = 2", "degree = 7", 34, 10, &["0 to 6"]),
     ("cfl = 0.4", "cfl = 0", 35, 7, &["`cfl` is 0", "greater than 0"]),
     ("end = 1e-3", "end = -1e-3", 37, 7, &["`end` is -0.001"]),
-    ("end = 1e-3", "end = 6e-4", 40, 13, &["after the end of the run, 0.0006 s"]),
-    ("[5e-4, 1e-3]", "[0.0]", 40, 7, &["entry 0 of `at` is 0", "greater than 0"]),
-    ("every = 1e-4", "every = 1", 47, 9, &["longer than the run"]),
+    ("[5e-4, 1e-3]", "[-1e-9]", 40, 7, &["entry 0 of `at` is -0.000000001", "not negative"]),
+    ("every = 1e-4", "every = 0", 47, 9, &["`every` is 0", "greater than 0"]),
     ("samples = 300", "samples = 1", 46, 11, &["`samples` is 1", "from 2"]),
     ("to = [3.0, 0.0]", "to = [0.0, 0.0]", 45, 6, &["no length"]),
     ("velocity = [\"-200\", \"0\"]", "deformation = [1, 1, 1, 1]", 13, 15, &["determinant J = 0"]),
@@ -183,6 +182,20 @@ fn bad_scenes_say_what_where_and_what_exists() {
         }
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+#[test]
+fn outputs_after_the_end_are_warnings_since_set_shortens_runs() {
+    let warnings = |sets: &[&str]| {
+        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+        Scene::parse(GOOD, Path::new("case.toml"), &sets).unwrap().warnings()
+    };
+    assert!(warnings(&[]).is_empty() && warnings(&["output.0.at=[0.0]"]).is_empty());
+    let [at, every] = &warnings(&["time.end=6e-5"])[..] else { panic!("two warnings") };
+    let words = "case.toml:40:6: `at` of output \"fields\": 2 of 2 times lie after the end of the run, 6e-5 s";
+    assert!(at.starts_with(words), "{at}");
+    assert!(every.starts_with("case.toml:47:9: `every` of output \"bottom\": longer than the run, 6e-5 s"), "{every}");
+    assert!(warnings(&["output.0.at=[1]"])[0].starts_with("--set output.0.at=[1]: `at`"));
 }
 
 #[test]

@@ -17,9 +17,9 @@ use std::path::{Path, PathBuf};
 /// Arguments.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Folder of a run
+    /// Folder of a run, such as runs/square; files go to its folder export/
     run: PathBuf,
-    /// Formats
+    /// Formats, separated by commas
     #[arg(long, value_delimiter = ',', default_values_t = [Format::Vtu, Format::Xdmf])]
     format: Vec<Format>,
 }
@@ -52,7 +52,11 @@ struct Export {
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     let folder = Folder::new(&args.run);
-    let files = snapshot::list(&folder.snapshots())?;
+    if !folder.scene().is_file() {
+        let what = format!("{} is not the folder of a run: it holds no scene.toml", args.run.display());
+        return Err(Error::input(what, "give the folder that `dgmpm run` has written, such as runs/square"));
+    }
+    let files = if folder.snapshots().is_dir() { snapshot::list(&folder.snapshots())? } else { vec![] };
     if files.is_empty() {
         let what = format!("{} holds no snapshot", folder.snapshots().display());
         return Err(Error::input(what, "run a scene with an [[output]] of kind = \"fields\""));

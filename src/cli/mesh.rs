@@ -22,7 +22,7 @@ pub struct Args {
 
 #[derive(Debug, clap::Args)]
 struct To {
-    /// Where to write: .h5, or .msh for Gmsh [default: the input's name with .h5]
+    /// Where to write: .h5, or .msh for Gmsh [default: the input's name with .h5, or rectangle.h5]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Replace the file
@@ -35,10 +35,10 @@ enum Action {
     /// Make [0, W] x [0, H] with groups left, right, bottom, top and body
     Rectangle {
         /// Edge lengths W,H in m
-        #[arg(long, value_name = "W,H", value_delimiter = ',', num_args = 1.., required = true)]
+        #[arg(long, value_name = "W,H", value_delimiter = ',', allow_hyphen_values = true, required = true)]
         size: Vec<f64>,
         /// Cells per direction NX,NY
-        #[arg(long, value_name = "NX,NY", value_delimiter = ',', num_args = 1.., required = true)]
+        #[arg(long, value_name = "NX,NY", value_delimiter = ',', required = true)]
         cells: Vec<usize>,
         #[command(flatten)]
         to: To,

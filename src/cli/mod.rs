@@ -15,9 +15,22 @@ use crate::error::{Error, Result};
 use clap::{Parser, Subcommand};
 use std::path::{Path, PathBuf};
 
+const AFTER_HELP: &str = "\
+All in one go:
+  dgmpm run square.toml --set scheme.degree=1 --out runs/square
+  dgmpm export runs/square
+
+Stage by stage, each from files:
+  dgmpm mesh square.msh
+  dgmpm seed square.toml --mesh square.h5 --out cloud.h5
+  dgmpm preprocess square.toml --mesh square.h5 --cloud cloud.h5 --out operators.h5
+  dgmpm solve square.toml --mesh square.h5 --cloud cloud.h5 --operators operators.h5
+
+Exit codes: 0 done, 2 bad input, 3 the run lost stability, 4 interrupted and saved, 5 output could not be written.";
+
 /// ADER Discontinuous Galerkin Material Point Method for fast, large-deformation solid dynamics.
 #[derive(Debug, Parser)]
-#[command(version, about, infer_subcommands = false)]
+#[command(version, about, after_help = AFTER_HELP, infer_subcommands = false)]
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -29,11 +42,11 @@ enum Command {
     Mesh(mesh::Args),
     /// Put material points into the cells of a mesh
     Seed(seed::Args),
-    /// Compute and store all matrices; say what the run will cost
+    /// Compute and store all matrices, and say what the run will cost
     Preprocess(preprocess::Args),
-    /// Step the conservation laws from stored files
+    /// Step the conservation laws, from stored files where they are given
     Solve(solve::Args),
-    /// All of it: mesh, seed, preprocess, solve
+    /// Run a scene: mesh, seed, preprocess and solve in one go
     Run(run::Args),
     /// Write a run's snapshots for ParaView, meshio and DOLFINx
     Export(export::Args),
@@ -59,7 +72,7 @@ pub fn run(cli: Cli) -> Result<()> {
 struct SceneArgs {
     /// Scene file (TOML)
     scene: PathBuf,
-    /// Override a key: scheme.degree=3, boundary.0.kind=free
+    /// Override a key, as often as needed: scheme.degree=3, boundary.0.kind=free, time.end=1e-4
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
 }

@@ -4,11 +4,11 @@ use crate::cloud::Cloud;
 use crate::error::Result;
 use crate::io::{cloud_file, mesh_file, operators_file};
 use crate::lane::Kernel;
-use crate::mesh::{Mesh, links};
+use crate::mesh::{Mesh, links, map};
 use crate::operators::{Blocks, Line, Operators, Stored};
 use crate::run::Folder;
-use crate::scene::{Layout, Mesh as Source, Scene, build};
-use crate::step::Scheme;
+use crate::scene::{Scene, build};
+use crate::step::{Loss, Scheme};
 use std::path::{Path, PathBuf};
 
 /// Files of earlier stages; what is not given is made from the scene.
@@ -53,31 +53,53 @@ impl Files {
     }
 }
 
-/// Stored matrices from `path` if they were built from this very input, else built and, if it is given, written there.
+/// Where stored matrices may be found, and where new ones go.
+pub struct Store<'a> {
+    /// Files to look into, in this order.
+    pub look: &'a [&'a Path],
+    /// The file that new ones are written to.
+    pub write: &'a Path,
+}
+
+/// The operators, and in words where their matrices come from.
 ///
-/// The second result says whether they were reused.
-pub fn operators(scene: &Scene, body: &Body, path: Option<&Path>) -> Result<(Operators, bool)> {
+/// # Errors
+/// A cell whose points cannot carry the degree; a file that cannot be written.
+pub fn operators(scene: &Scene, body: &Body, store: &Store) -> Result<(Operators, String)> {
     let needs = scene.needs(&body.cloud);
     let links = links(&body.mesh)?;
     let (line, blocks) = (Line::new(needs.degree), Blocks::new(&body.material, &links));
     let key = operators_file::key(&body.mesh, &body.material, &needs);
-    let found = match path {
-        // A damaged file is built again: it is only a store of what follows from the input.
-        Some(path) => operators_file::read(path, &key, &blocks, &needs).unwrap_or(None),
-        None => None,
-    };
-    let reused = found.is_some();
-    let stored = match found {
-        Some(stored) => stored,
-        None => {
-            let stored = Stored::build(&body.mesh, &blocks, &line, &needs)?;
-            if let Some(path) = path {
-                operators_file::write(path, &key, &stored)?;
+    let mut notes = Vec::new();
+    for path in store.look.iter().filter(|path| path.exists()) {
+        // A damaged file is built again: it only holds what follows from the input.
+        match operators_file::read(path, &key, &blocks, &needs) {
+            Ok(Some(stored)) => {
+                let from = format!("matrices reused from {}", path.display());
+                return Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), from));
             }
-            stored
+            Ok(None) => notes.push(format!("{} belongs to other mesh, cloud, degree or method", path.display())),
+            Err(_) => notes.push(format!("{} is damaged", path.display())),
         }
+    }
+    let stored = Stored::build(&body.mesh, &blocks, &line, &needs)?;
+    operators_file::write(store.write, &key, &stored)?;
+    notes.push(format!("matrices written to {}", store.write.display()));
+    Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), notes.join("; ")))
+}
+
+/// A loss of stability in words: what, cell, point and its reference coordinates.
+pub fn describe(loss: &Loss, scheme: &Scheme, mesh: &Mesh) -> String {
+    let xi = match &scheme.operators.points {
+        Some(points) => {
+            let (block, lane) = scheme.operators.blocks.slot[loss.cell];
+            [0, 1].map(|k| points.parent[2 * (points.first[block] + loss.point) + k].0[lane])
+        }
+        None => scheme.operators.line.basis.node_2d(loss.point),
     };
-    Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), reused))
+    let x = map::position(&mesh.corners(loss.cell), xi);
+    let cell = mesh.number(loss.cell);
+    format!("{} in cell {cell}, point {}, at X = ({:.6}, {:.6})", loss.kind, loss.point, x[0], x[1])
 }
 
 /// The scheme on the widest instruction set.
@@ -87,16 +109,9 @@ pub fn scheme(scene: &Scene, body: &Body, operators: Operators) -> Scheme {
 
 /// Writes scene, mesh and cloud into a run folder. Paths of the scene are replaced by those of the folder, so that the
 /// folder can be moved and run again.
-pub fn write_input(scene: &Scene, sets: &[String], body: &Body, folder: &Folder) -> Result<()> {
+pub fn write_input(scene: &Scene, files: &Files, body: &Body, folder: &Folder) -> Result<()> {
     mesh_file::write_mesh(&folder.mesh(), &body.mesh)?;
     cloud_file::write_cloud(&folder.cloud(), &body.cloud, &body.mesh)?;
-    let mut sets = sets.to_vec();
-    if matches!(scene.mesh, Source::File(_)) {
-        sets.push("mesh.file=mesh.h5".to_owned());
-    }
-    if matches!(scene.cloud.layout, Layout::File(_)) {
-        sets.push("cloud.path=cloud.h5".to_owned());
-    }
-    let text = Scene::load(scene.path(), &sets)?.to_toml();
+    let text = scene.portable_toml(files.mesh.is_some(), files.cloud.is_some());
     crate::io::pending::write_text(&folder.scene(), &text)
 }

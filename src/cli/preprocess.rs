@@ -1,16 +1,17 @@
 //! `dgmpm preprocess`: all matrices, and what the run will cost.
 
-use super::pipeline::{self, Body, Files};
+use super::pipeline::{self, Body, Files, Store};
 use super::print::{mebibytes, row, say, seconds, table};
 use super::{SceneArgs, keep};
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::io::operators_file;
 use crate::mesh::Mesh;
 use crate::operators::certificate::{Certificate, certify};
 use crate::operators::{Pool, Sampling};
 use crate::run::Settings;
 use crate::scene::Scene;
 use crate::state::State;
-use crate::step::{Scheme, Survey, Work, cfl};
+use crate::step::{Loss, Scheme, Survey, Work, cfl};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -21,10 +22,10 @@ pub struct Args {
     scene: SceneArgs,
     #[command(flatten)]
     files: Files,
-    /// Where to write
+    /// Where to write; matrices that are there already are reused if they belong to the same input
     #[arg(long, value_name = "FILE", default_value = "operators.h5")]
     out: PathBuf,
-    /// Replace the file
+    /// Build again, and replace the file whatever it is
     #[arg(long)]
     force: bool,
 }
@@ -32,14 +33,15 @@ pub struct Args {
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     let scene = Scene::load(&args.scene.scene, &args.scene.sets)?;
+    keep(&args.out, args.force || operators_file::may_replace(&args.out))?;
+    let settings = scene.settings()?;
     let body = args.files.body(&scene)?;
-    keep(&args.out, args.force)?;
-    let (operators, reused) = pipeline::operators(&scene, &body, Some(&args.out))?;
+    let look = if args.force { vec![] } else { vec![args.out.as_path()] };
+    let (operators, origin) = pipeline::operators(&scene, &body, &Store { look: &look, write: &args.out })?;
     let scheme = pipeline::scheme(&scene, &body, operators);
-    let settings = scene.settings(&scheme.method)?;
     let state = scene.initial_state(&body.mesh, &scheme)?;
     report(&scene, &body, &scheme, &state, settings)?;
-    say(format!("{} {}", if reused { "reused" } else { "written to" }, args.out.display()));
+    say(origin);
     Ok(())
 }
 
@@ -55,7 +57,7 @@ pub fn report(scene: &Scene, body: &Body, scheme: &Scheme, state: &State, settin
     let operators = &scheme.operators;
     let h = extreme(&body.mesh, &certificates, |c| -c.h);
     let lebesgue = extreme(&body.mesh, &certificates, |c| c.lebesgue);
-    let cost = cost(scheme, state, settings, -h.0);
+    let cost = cost(scheme, state, settings, -h.0).map_err(|loss| sick(scene, body, scheme, &loss))?;
     let memory = operators.bytes() + cost.work + size_of_val(&state.u[..]);
     let mut rows = vec![
         row("method", format!("{} S{}T{}", scene.scheme.method.name(), scene.scheme.degree, scene.scheme.time_degree)),
@@ -96,6 +98,12 @@ fn classes<S, O>(pool: &Pool<S, O>) -> String {
     format!("{} shared by congruent cells, {} blocks with their own", pool.shared.len(), pool.own.len())
 }
 
+/// The initial state is healthy at the nodes, and not at the points that its polynomial is sampled at.
+fn sick(scene: &Scene, body: &Body, scheme: &Scheme, loss: &Loss) -> Error {
+    let what = format!("the initial state is lost: {}", pipeline::describe(loss, scheme, &body.mesh));
+    scene.error("initial.deformation", what, "give a deformation that is smooth at the size of a cell, or a finer mesh")
+}
+
 struct Cost {
     dt: f64,
     steps: f64,
@@ -104,24 +112,21 @@ struct Cost {
 }
 
 /// The first step size, and the time of the run from two trial steps on a copy of the state.
-fn cost(scheme: &Scheme, state: &State, settings: Settings, h: f64) -> Cost {
+fn cost(scheme: &Scheme, state: &State, settings: Settings, h: f64) -> std::result::Result<Cost, Loss> {
     let mut work = Work::new(scheme, state);
     let mut survey = Survey::default();
-    // A sick initial state is reported by the run itself, with its cell.
-    let healthy = scheme.survey(state, &work, &mut survey).is_ok() && survey.fastest > 0.0;
-    let dt = if healthy { settings.courant * h / survey.fastest } else { f64::NAN };
+    scheme.survey(state, &work, &mut survey)?;
+    let dt = settings.courant * h / survey.fastest;
     let steps = (settings.end / dt).ceil();
     let mut trial = || {
         let clock = Instant::now();
-        if healthy {
-            scheme.step(state, dt, &survey, &mut work);
-            let mut after = survey.clone();
-            let _ = scheme.survey(&work.next, &work, &mut after);
-        }
+        scheme.step(state, dt, &survey, &mut work);
+        // What becomes of the first step is for the run to say.
+        let _ = scheme.survey(&work.next, &work, &mut survey.clone());
         clock.elapsed().as_secs_f64()
     };
     // The first trial touches the memory for the first time.
     let _ = trial();
     let seconds = trial() * steps;
-    Cost { dt, steps, seconds, work: work.bytes() }
+    Ok(Cost { dt, steps, seconds, work: work.bytes() })
 }

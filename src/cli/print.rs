@@ -1,15 +1,17 @@
-//! What commands say on standard output; a reader that closes the pipe ends the program quietly.
+//! What commands say. A reader that closes the pipe (`dgmpm run .. | head -1`) neither stops nor breaks a run: results
+//! are files, and the exit code says how it went.
 
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 
-/// Prints a line.
+/// Prints a line on standard output.
 pub fn say(text: impl AsRef<str>) {
     let mut out = std::io::stdout().lock();
-    if let Err(why) = writeln!(out, "{}", text.as_ref()).and_then(|()| out.flush())
-        && why.kind() == ErrorKind::BrokenPipe
-    {
-        std::process::exit(0);
-    }
+    let _ = writeln!(out, "{}", text.as_ref()).and_then(|()| out.flush());
+}
+
+/// Prints a line on standard error, as a warning.
+pub fn warn(text: impl AsRef<str>) {
+    let _ = writeln!(std::io::stderr(), "warning: {}", text.as_ref());
 }
 
 /// Prints a table of two columns.

@@ -1,11 +1,10 @@
 //! `dgmpm solve`: steps the conservation laws.
 
-use super::pipeline::{self, Body, Files};
-use super::print::say;
+use super::pipeline::{self, Body, Files, Store};
+use super::print::{say, warn};
 use super::progress::Progress;
 use super::{RunArgs, SceneArgs, preprocess, summary};
-use crate::error::{Error, Result};
-use crate::mesh::map;
+use crate::error::{Error, Place, Result};
 use crate::observe;
 use crate::run::{Folder, Report, Run, Settings, Stop};
 use crate::scene::Scene;
@@ -14,6 +13,8 @@ use crate::step::{Loss, Scheme};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Exit code of a program that was ended by a second Ctrl-C, as shells have it: nothing was saved.
+const KILLED: i32 = 130;
 /// Set by the first Ctrl-C.
 static INTERRUPT: AtomicBool = AtomicBool::new(false);
 
@@ -24,7 +25,7 @@ pub struct Args {
     scene: SceneArgs,
     #[command(flatten)]
     files: Files,
-    /// Stored matrices of `preprocess`
+    /// Stored matrices of `preprocess`; where they belong to other input, new ones go to the run folder
     #[arg(long, value_name = "FILE")]
     operators: Option<PathBuf>,
     #[command(flatten)]
@@ -40,20 +41,28 @@ pub fn run(args: &Args) -> Result<()> {
 pub fn all(scene_args: &SceneArgs, files: &Files, operators: Option<&Path>, run: &RunArgs) -> Result<()> {
     run.start_threads()?;
     let scene = Scene::load(&scene_args.scene, &scene_args.sets)?;
+    scene.warnings().iter().for_each(warn);
     let folder = run.folder(&scene);
+    // All that can be wrong is found before results on the disk are changed.
+    if !run.force {
+        folder.refuse_results()?;
+    }
+    let settings = scene.settings()?;
     let body = files.body(&scene)?;
-    let path = operators.map_or_else(|| folder.operators(), Path::to_owned);
-    let (operators, reused) = pipeline::operators(&scene, &body, Some(&path))?;
+    scene.check_lines(&body.mesh)?;
+    if let Some(missing) = operators.filter(|path| !path.exists()) {
+        return Err(Error::at(Place::file(missing), "there is no such file", "make it by `dgmpm preprocess`"));
+    }
+    let own = folder.operators();
+    let look: Vec<&Path> = operators.into_iter().chain([own.as_path()]).collect();
+    let (operators, origin) = pipeline::operators(&scene, &body, &Store { look: &look, write: &own })?;
     let scheme = pipeline::scheme(&scene, &body, operators);
-    let settings = scene.settings(&scheme.method)?;
     let state = scene.initial_state(&body.mesh, &scheme)?;
-    folder.clear_results(run.force)?;
-    pipeline::write_input(&scene, &scene_args.sets, &body, &folder)?;
     say(&scene.title);
     preprocess::report(&scene, &body, &scheme, &state, settings)?;
-    if reused {
-        say(format!("matrices reused from {}", path.display()));
-    }
+    say(origin);
+    folder.clear_results()?;
+    pipeline::write_input(&scene, files, &body, &folder)?;
     Solve { scene: &scene, body: &body, scheme: &scheme, folder: &folder }.run(state, settings)
 }
 
@@ -67,7 +76,11 @@ struct Solve<'a> {
 impl Solve<'_> {
     fn run(&self, mut state: State, settings: Settings) -> Result<()> {
         // A second handler (in a test that runs twice in one process) is no reason to stop.
-        let _ = ctrlc::set_handler(|| INTERRUPT.store(true, Ordering::Relaxed));
+        let _ = ctrlc::set_handler(|| {
+            if INTERRUPT.swap(true, Ordering::Relaxed) {
+                std::process::exit(KILLED);
+            }
+        });
         let mut observers = self.scene.observers(&self.body.mesh, self.folder)?;
         observers.push(Box::new(Progress::new(settings.end)));
         let mut run = Run { mesh: &self.body.mesh, scheme: self.scheme, settings, observers, interrupt: &INTERRUPT };
@@ -80,9 +93,9 @@ impl Solve<'_> {
             Err(stop) => self.stopped(stop, &state),
         };
         summary::print(self.scheme, &report);
-        summary::write(self.scene, self.body, self.scheme, &state, &report, self.folder, status)?;
+        let written = summary::write(self.scene, self.body, self.scheme, &state, &report, self.folder, status);
         say(format!("results in {}", self.folder.root.display()));
-        result
+        result.and(written)
     }
 
     /// Keeps the last good state and says why the run ended.
@@ -105,17 +118,8 @@ impl Solve<'_> {
     }
 
     fn unstable(&self, loss: &Loss, state: &State, place: &str) -> Error {
-        let x = match &self.scheme.operators.points {
-            Some(points) => {
-                let (block, lane) = self.scheme.operators.blocks.slot[loss.cell];
-                [0, 1].map(|k| points.parent[2 * (points.first[block] + loss.point) + k].0[lane])
-            }
-            None => self.scheme.operators.line.basis.node_2d(loss.point),
-        };
-        let x = map::position(&self.body.mesh.corners(loss.cell), x);
-        let number = self.body.mesh.number(loss.cell);
         Error::Unstable {
-            what: format!("{} in cell {number}, point {}, at X = ({:.6}, {:.6})", loss.kind, loss.point, x[0], x[1]),
+            what: pipeline::describe(loss, self.scheme, &self.body.mesh),
             time: state.time,
             step: state.step + 1,
             remedy: format!("{place}; a smaller scheme.safety, a finer mesh, or [curl] control = \"lcf\" may help"),

@@ -36,7 +36,10 @@ pub fn write(
 pub fn print(scheme: &Scheme, report: &Report) {
     let mut rows = vec![
         row("steps", report.steps.to_string()),
-        row("dt", format!("{:.4e} .. {:.4e} s", report.dt[0], report.dt[1])),
+        row(
+            "dt",
+            if report.steps > 0 { format!("{:.4e} .. {:.4e} s", report.dt[0], report.dt[1]) } else { "-".into() },
+        ),
         row("wall, CPU", format!("{}, {}", seconds(report.wall), seconds(report.cpu))),
     ];
     let all: f64 = report.phases.seconds.iter().sum();

@@ -115,6 +115,8 @@ fn text_value(text: &str) -> h5::Result<VarLenUnicode> {
 
 /// A text attribute of a file's root, if the file can be read and has it.
 pub fn peek_attribute(path: &Path, name: &str) -> Option<String> {
+    // A damaged file must not reach the HDF5 library.
+    seal::check(path).ok().filter(|seal| *seal != Seal::Broken)?;
     let file = h5::File::open(path).ok()?;
     read_attribute(&file, name).ok()
 }

@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use super::hash::{self, Digest};
+use super::hdf5;
+use super::seal::{self, Seal};
 use super::store::{ArrayRef, Format, Store, write_arrays};
 use crate::error::Result;
 use crate::mesh::Mesh;
@@ -43,6 +45,12 @@ pub fn write(path: &Path, key: &str, stored: &Stored) -> Result<()> {
     write_arrays(path, FORMAT, &[("key", key.to_owned())], &arrays)
 }
 
+/// Whether new matrices may take the place of a file: it holds matrices, or is a damaged store of whatever kind.
+pub fn may_replace(path: &Path) -> bool {
+    let ours = || hdf5::peek_attribute(path, "format").is_some_and(|name| name == FORMAT.name);
+    matches!(seal::check(path), Ok(Seal::Broken)) || ours()
+}
+
 /// Reads the matrices if they have this key; none where the file is missing or was built from other input.
 ///
 /// # Errors
@@ -71,7 +79,7 @@ pub fn read(path: &Path, key: &str, blocks: &Blocks, needs: &Needs) -> Result<Op
 
 fn flat(store: &mut Store, name: &str) -> Result<Flat> {
     let share = store.take(&format!("{name}_share"))?.1;
-    let super::hdf5::Values::I64(share) = share else {
+    let hdf5::Values::I64(share) = share else {
         return Err(store.error(format!("`{name}_share` is not an array of integers")));
     };
     Ok(Flat {

@@ -2,6 +2,7 @@
 //! snapshot files are stores, and so may anything else be that has to outlive a process.
 
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::Path;
 
 use super::hdf5::{self, Reader, Values};
@@ -179,6 +180,14 @@ fn check_format(reader: &Reader, attributes: &BTreeMap<String, String>, format: 
         }
         Err(_) => Err(reader.error(format!("its version `{text}` is not a number"))),
     }
+}
+
+/// Whether a file is meant as a store, whole or damaged: by its name or its first bytes.
+pub fn is_meant_as_store(path: &Path) -> bool {
+    let signature = b"\x89HDF\r\n\x1a\n";
+    let mut start = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(signature.len() as u64).read_to_end(&mut start));
+    path.extension().is_some_and(|ending| ending == "h5") || read.is_ok() && start == signature
 }
 
 /// Whether a file is a store of this program, of whatever format (which output must never replace by another kind).

@@ -47,7 +47,7 @@ impl Line {
         samples: &Samples,
         schedule: Schedule,
     ) -> Result<Self, Error> {
-        let at = samples.locate(mesh)?;
+        let at = samples.locate(mesh).map_err(|outside| Error::input(outside.to_string(), Outside::REMEDY))?;
         let names: Vec<String> = samples.fields.iter().flat_map(|field| field.components()).collect();
         let columns: Vec<&str> = ["t", "s", "x", "y"].into_iter().chain(names.iter().map(String::as_str)).collect();
         let table = Table::create(path, &columns)?;
@@ -55,26 +55,40 @@ impl Line {
     }
 }
 
+/// A sample that lies outside of the mesh.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("sample {} of {count} of the line, at ({}, {}), lies outside of the mesh", .sample + 1, .x[0], .x[1])]
+pub struct Outside {
+    /// Its number, from 0.
+    pub sample: usize,
+    /// The number of samples.
+    pub count: usize,
+    /// Where it lies.
+    pub x: [f64; 2],
+}
+
+impl Outside {
+    /// What would be right.
+    pub const REMEDY: &str = "choose `from` and `to` inside of the body in its initial configuration";
+}
+
 impl Samples {
-    fn locate(&self, mesh: &Mesh) -> Result<Vec<Sample>, Error> {
+    /// Whether the whole line lies in the mesh.
+    ///
+    /// # Errors
+    /// The first sample that does not.
+    pub fn check(&self, mesh: &Mesh) -> Result<(), Outside> {
+        self.locate(mesh).map(|_| ())
+    }
+
+    fn locate(&self, mesh: &Mesh) -> Result<Vec<Sample>, Outside> {
         let locator = Locator::new(mesh);
         let [from, to] = self.ends;
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);
         let sample = |i: usize| {
             let share = i as f64 / (self.count - 1) as f64;
             let x = [0, 1].map(|k| if i + 1 == self.count { to[k] } else { from[k] + share * (to[k] - from[k]) });
-            let (cell, xi) = locator.find(x).ok_or_else(|| {
-                Error::input(
-                    format!(
-                        "sample {} of {} of a line, at ({}, {}), lies outside of the mesh",
-                        i + 1,
-                        self.count,
-                        x[0],
-                        x[1]
-                    ),
-                    "choose `from` and `to` inside of the body in its initial configuration",
-                )
-            })?;
+            let (cell, xi) = locator.find(x).ok_or(Outside { sample: i, count: self.count, x })?;
             Ok(Sample { s: share * length, x, cell, xi })
         };
         (0..self.count).map(sample).collect()

@@ -11,7 +11,7 @@ mod solution;
 
 pub use fields::Field;
 pub use ledger::Ledger;
-pub use line::{Line, Samples};
+pub use line::{Line, Outside, Samples};
 pub use schedule::{Schedule, When};
 pub use snapshots::{Snapshots, take, write};
 pub use solution::{Point, Solution};
@@ -32,7 +32,7 @@ pub struct View<'a> {
     pub state: &'a State,
     /// Its wave speeds and min J.
     pub survey: &'a Survey,
-    /// The step that follows, s.
+    /// The step that follows, s; 0 at the end of the run.
     pub dt: f64,
 }
 

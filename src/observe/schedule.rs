@@ -14,79 +14,111 @@ pub enum When {
 /// Times that were asked for, and how far they have been served.
 ///
 /// "At t" is the end of the step that is nearest to t, so that observing changes no bit of the run; with exact times
-/// the steps are cut to end there.
+/// the steps are cut to end there. Times of a list that lie after the end of the run are nearest to its last state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
     when: When,
     exact: bool,
+    with_end: bool,
+    /// How many of the times asked for have been served.
     served: usize,
 }
+
+/// Two times are the same within this share of them: some roundings of sums of steps and of multiples of an interval.
+const SAME: f64 = 1e-12;
 
 impl Schedule {
     /// A schedule from its start.
     pub fn new(when: When, exact: bool) -> Self {
-        Self { when, exact, served: 0 }
+        Self { when, exact, with_end: false, served: 0 }
     }
 
-    /// Whether the state at the end of step `step` is due, at time `time`, if the next step is `dt`; `end` is the end
-    /// of the run, which is never passed.
+    /// Looks at the end of the run too.
+    pub fn with_end(self) -> Self {
+        Self { with_end: true, ..self }
+    }
+
+    /// Whether the state after `step` steps, at `time`, is due; `dt` is the step that follows, 0 at the end of the run.
     pub fn due(&mut self, step: usize, time: f64, dt: f64) -> bool {
-        let mut due = false;
-        while let Some(asked) = self.next() {
-            let now = match asked {
-                Asked::Time(asked) => asked <= time + 0.5 * dt,
-                Asked::Step(asked) => asked <= step,
-            };
-            if !now {
-                break;
-            }
-            due = true;
-            self.served += 1;
-        }
+        let last = dt == 0.0;
+        let ahead = if self.exact { 0.0 } else { 0.5 * dt };
+        let asked = match &self.when {
+            When::At(times) if last => times.len(),
+            _ => self.asked(step, time + ahead),
+        };
+        let due = asked > self.served || last && self.with_end;
+        self.served = self.served.max(asked);
         due
     }
 
-    /// The next time at which a step has to end, if times are exact.
-    pub fn stop(&self) -> Option<f64> {
-        match self.next() {
-            Some(Asked::Time(time)) if self.exact => Some(time),
+    /// The next time after `time` at which a step has to end, if times are exact.
+    pub fn stop(&self, time: f64) -> Option<f64> {
+        let next = self.asked(0, time);
+        match &self.when {
+            When::At(times) if self.exact => times.get(next).copied(),
+            When::Every(interval) if self.exact => Some(interval * next as f64),
             _ => None,
         }
     }
 
-    fn next(&self) -> Option<Asked> {
+    /// How many of the times asked for lie up to a step or a time.
+    fn asked(&self, step: usize, time: f64) -> usize {
+        let time = time * (1.0 + SAME);
         match &self.when {
-            When::At(times) => times.get(self.served).map(|t| Asked::Time(*t)),
-            When::Every(interval) => Some(Asked::Time(interval * self.served as f64)),
-            When::EverySteps(steps) => Some(Asked::Step(steps * self.served)),
+            When::At(times) => times.partition_point(|t| *t <= time),
+            When::Every(interval) => (time / interval).floor() as usize + 1,
+            When::EverySteps(steps) => step / steps + 1,
         }
     }
-}
-
-enum Asked {
-    Time(f64),
-    Step(usize),
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_nearest_step_is_taken_once() {
-        let mut schedule = Schedule::new(When::At(vec![0.24, 0.26, 1.0]), false);
-        let due: Vec<usize> = (0..=10).filter(|&n| schedule.due(n, n as f64 * 0.1, 0.1)).collect();
-        // .24 lies nearest to .2, .26 to .3.
-        assert_eq!(due, [2, 3, 10]);
+    /// The steps of size .1 up to 1 that a schedule looks at.
+    fn looks(mut schedule: Schedule) -> Vec<usize> {
+        let dt = |n| if n == 10 { 0.0 } else { 0.1 };
+        (0..=10).filter(|&n| schedule.due(n, n as f64 * 0.1, dt(n))).collect()
     }
 
     #[test]
-    fn steps_and_intervals_count_from_the_start() {
-        let mut steps = Schedule::new(When::EverySteps(4), false);
-        let mut every = Schedule::new(When::Every(0.25), true);
-        assert_eq!((0..=10).filter(|&n| steps.due(n, n as f64 * 0.1, 0.1)).collect::<Vec<_>>(), [0, 4, 8]);
-        assert_eq!(every.stop(), Some(0.0));
-        assert!(every.due(0, 0.0, 0.1));
-        assert_eq!(every.stop(), Some(0.25));
+    fn the_nearest_step_is_taken_once() {
+        // .24 lies nearest to .2, .26 and .28 to .3.
+        assert_eq!(looks(Schedule::new(When::At(vec![0.0, 0.24, 0.26, 0.28, 1.0]), false)), [0, 2, 3, 10]);
+    }
+
+    #[test]
+    fn the_last_state_stands_once_for_all_times_after_the_end() {
+        assert_eq!(looks(Schedule::new(When::At(vec![0.5, 2.0, 3.0]), false)), [5, 10]);
+        assert_eq!(looks(Schedule::new(When::At(vec![2.0]), true)), [10]);
+    }
+
+    #[test]
+    fn intervals_count_from_the_start_and_stop_with_the_run() {
+        assert_eq!(looks(Schedule::new(When::Every(0.25), false)), [0, 2, 5, 7, 10]);
+        // 3 x .1 is a rounding above .3: a multiple of the interval is met all the same.
+        assert_eq!(looks(Schedule::new(When::Every(0.1), true)), (0..=10).collect::<Vec<_>>());
+        assert_eq!(looks(Schedule::new(When::Every(5.0), false)), [0]);
+        assert_eq!(looks(Schedule::new(When::EverySteps(4), false)), [0, 4, 8]);
+        assert_eq!(looks(Schedule::new(When::EverySteps(4), false).with_end()), [0, 4, 8, 10]);
+        assert_eq!(looks(Schedule::new(When::EverySteps(5), false).with_end()), [0, 5, 10]);
+    }
+
+    #[test]
+    fn an_interval_far_below_the_step_costs_nothing() {
+        assert_eq!(looks(Schedule::new(When::Every(1e-30), false)), (0..=10).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn exact_times_name_the_next_stop_and_are_not_served_before_it() {
+        let mut schedule = Schedule::new(When::Every(0.25), true);
+        assert_eq!(schedule.stop(0.0), Some(0.25));
+        // The nearest step would do for times that are not exact.
+        assert!(schedule.due(0, 0.0, 0.1) && !schedule.due(1, 0.24, 0.1) && schedule.due(2, 0.25, 0.1));
+        assert_eq!(schedule.stop(0.25), Some(0.5));
+        let list = Schedule::new(When::At(vec![0.1, 0.3]), true);
+        assert_eq!([0.0, 0.1, 0.2, 0.3].map(|t| list.stop(t)), [Some(0.1), Some(0.3), Some(0.3), None]);
+        assert_eq!(Schedule::new(When::At(vec![0.1]), false).stop(0.0), None);
     }
 }

@@ -42,7 +42,8 @@ fn masses_sum_to_the_area_and_normals_close_each_cell() {
         // Exact quadrature: rounding of a sum of 9 numbers of size .01.
         assert!((mass - map::area(&mesh.corners(cell))).abs() < 1e-16);
         for axis in 0..2 {
-            let face = |f: usize| geometry.normal[(4 * block + f) * 2 + axis].0[lane] * geometry.length[4 * block + f].0[lane];
+            let face =
+                |f: usize| geometry.normal[(4 * block + f) * 2 + axis].0[lane] * geometry.length[4 * block + f].0[lane];
             // The boundary of a cell is closed: four edges of size .3.
             assert!((0..4).map(face).sum::<f64>().abs() < 2e-16);
         }
@@ -101,7 +102,11 @@ fn the_curl_free_complement_is_orthonormal_and_blind_to_gradients() {
                 let mass = |r: usize| operators.geometry.mass[block * n + r % n].0[lane];
                 let against = |field: &dyn Fn(usize, [f64; 2]) -> f64, k: usize| -> f64 {
                     (0..2 * n)
-                        .map(|r| c(r, k) * mass(r) * field(r / n, map::position(&mesh.corners(cell), line.basis.node_2d(r % n))))
+                        .map(|r| {
+                            c(r, k)
+                                * mass(r)
+                                * field(r / n, map::position(&mesh.corners(cell), line.basis.node_2d(r % n)))
+                        })
                         .sum()
                 };
                 for k in 0..columns {

@@ -16,8 +16,8 @@ impl Riemann for Rusanov {
         let v = [half * (minus.v[0] + plus.v[0]), half * (minus.v[1] + plus.v[1])];
         let t = [half * (minus.t[0] + plus.t[0]), half * (minus.t[1] + plus.t[1])];
         let mut flux = star(v, t, n);
-        for k in 0..4 {
-            flux[k] = flux[k] - c * (plus.f[k] - minus.f[k]);
+        for (flux, (minus, plus)) in flux.iter_mut().zip(minus.f.iter().zip(&plus.f)) {
+            *flux = *flux - c * (*plus - *minus);
         }
         for i in 0..2 {
             flux[4 + i] = flux[4 + i] - jump * (plus.v[i] - minus.v[i]);

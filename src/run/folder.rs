@@ -61,19 +61,30 @@ impl Folder {
         self.root.join("export")
     }
 
-    /// Makes the folder ready for results: those of an earlier run are removed if `force`, else refused.
+    /// Results of an earlier run that are there.
+    fn results(&self) -> impl Iterator<Item = PathBuf> {
+        let all = [self.snapshots(), self.root.join("lines"), self.ledger(), self.summary(), self.export()];
+        all.into_iter().filter(|path| path.exists())
+    }
+
+    /// Refuses a folder with results of an earlier run; changes nothing.
     ///
     /// # Errors
-    /// Earlier results without `force`; a folder that cannot be made.
-    pub fn clear_results(&self, force: bool) -> Result<(), Error> {
-        let old = [self.snapshots(), self.root.join("lines"), self.ledger(), self.summary(), self.export()];
-        for path in old.iter().filter(|path| path.exists()) {
-            if !force {
-                return Err(Error::input(
-                    format!("{} holds results of an earlier run ({})", self.root.display(), path.display()),
-                    "give --force to replace them, or another folder by --out",
-                ));
-            }
+    /// Bad input, which names what is there.
+    pub fn refuse_results(&self) -> Result<(), Error> {
+        let Some(path) = self.results().next() else { return Ok(()) };
+        Err(Error::input(
+            format!("{} holds results of an earlier run ({})", self.root.display(), path.display()),
+            "give --force to replace them, or another folder by --out",
+        ))
+    }
+
+    /// Makes the folder ready for results: those of an earlier run are removed.
+    ///
+    /// # Errors
+    /// A folder that cannot be made, a result that cannot be removed.
+    pub fn clear_results(&self) -> Result<(), Error> {
+        for path in &self.results().collect::<Vec<_>>() {
             let removed = if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
             removed.map_err(|why| Error::output(path, why))?;
         }

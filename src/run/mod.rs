@@ -68,22 +68,23 @@ impl Run<'_> {
         let h = self.smallest_h();
         let mut next = survey.clone();
         while state.time < self.settings.end {
-            let dt = self.step_size(state.time, self.settings.courant * h / survey.fastest);
+            let stop = self.next_stop(state.time);
+            let dt = step_size(stop - state.time, self.settings.courant * h / survey.fastest);
             self.observe(state, &survey, dt)?;
             if self.interrupt.load(Ordering::Relaxed) {
                 return Err(Stop::Interrupted);
             }
             self.scheme.step(state, dt, &survey, &mut work);
-            // A step that ends at the end of the run ends there to the last bit.
-            if self.settings.end - work.next.time < 1e-9 * dt {
-                work.next.time = self.settings.end;
+            // A step that is meant to end at the end of the run or at an exact time ends there to the last bit.
+            if (stop - work.next.time).abs() < 1e-9 * dt {
+                work.next.time = stop;
             }
             self.scheme.survey(&work.next, &work, &mut next).map_err(Stop::Unstable)?;
             std::mem::swap(state, &mut work.next);
             std::mem::swap(&mut survey, &mut next);
             report.count(dt, &survey, &mut work);
         }
-        self.observe(state, &survey, f64::INFINITY)?;
+        self.observe(state, &survey, 0.0)?;
         Ok(())
     }
 
@@ -94,13 +95,9 @@ impl Run<'_> {
         blocks.flat_map(|(&count, h)| &h.0[..count]).fold(f64::INFINITY, |a, b| a.min(*b))
     }
 
-    /// The stable step, shortened evenly over the last ones before the end (or before an exact output).
-    fn step_size(&mut self, time: f64, stable: f64) -> f64 {
-        let stops = self.observers.iter_mut().filter_map(|o| o.schedule().stop());
-        let stop = stops.filter(|&t| t > time * (1.0 + 1e-12)).fold(self.settings.end, f64::min);
-        let steps = ((stop - time) / stable - 1e-9).ceil();
-        // Two steps suffice for evenness: none is shorter than half of the stable one.
-        if steps <= 2.0 { (stop - time) / steps.max(1.0) } else { stable }
+    /// The time that a step must not pass: the end, or an exact output before it.
+    fn next_stop(&mut self, time: f64) -> f64 {
+        self.observers.iter_mut().filter_map(|o| o.schedule().stop(time)).fold(self.settings.end, f64::min)
     }
 
     /// Shows the state to those who wait for it.
@@ -111,5 +108,41 @@ impl Run<'_> {
             }
         }
         Ok(())
+    }
+}
+
+/// The stable step, shortened evenly over the last ones before a time that lies `rest` ahead.
+fn step_size(rest: f64, stable: f64) -> f64 {
+    let steps = (rest / stable - 1e-9).ceil();
+    // Two steps suffice for evenness: none is shorter than half of the stable one.
+    if steps <= 2.0 { rest / steps.max(1.0) } else { stable }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps of size up to `stable` through `rest`.
+    fn steps(rest: f64, stable: f64) -> Vec<f64> {
+        let (mut left, mut out) = (rest, Vec::new());
+        while left > 1e-9 * stable {
+            out.push(step_size(left, stable));
+            left -= out.last().unwrap();
+        }
+        out
+    }
+
+    #[test]
+    fn as_few_steps_as_the_limit_allows_and_the_last_two_are_even() {
+        for rest in [0.3, 1.0, 1.2, 2.0, 2.01, 3.0, 7.001, 7.999, 8.0, 41.5] {
+            let all = steps(rest, 1.0);
+            assert_eq!(all.len(), f64::ceil(rest) as usize, "{rest}: {all:?}");
+            // The limit may be passed by the rounding that `step_size` forgives.
+            assert!(all.iter().all(|dt| *dt <= 1.0 + 1e-9), "{rest}: {all:?}");
+            if let [.., a, b] = all[..] {
+                // Roundings of sums of up to 42 steps; neither is shorter than half of the stable step.
+                assert!((a - b).abs() < 1e-12 && b > 0.5, "{rest}: {all:?}");
+            }
+        }
     }
 }

@@ -10,7 +10,7 @@ use crate::io::{cloud_file, gmsh, mesh_file, store};
 use crate::lane::Kernel;
 use crate::material::Law;
 use crate::mesh::{self, Mesh};
-use crate::observe::{Field, Ledger, Line, Observer, Samples, Schedule, Snapshots};
+use crate::observe::{Field, Ledger, Line, Observer, Outside, Samples, Schedule, Snapshots};
 use crate::operators::{Needs, Operators, Sampling};
 use crate::run::{Folder, Settings};
 use crate::source::{self, BodyForce};
@@ -29,7 +29,7 @@ const LEDGER_STEPS: usize = 10;
 /// # Errors
 /// Bad input, with its place.
 pub fn read_mesh(path: &Path) -> Result<Mesh> {
-    if store::is_store(path) { mesh_file::read_mesh(path) } else { gmsh::read(path) }
+    if store::is_meant_as_store(path) { mesh_file::read_mesh(path) } else { gmsh::read(path) }
 }
 
 /// An expression as data of boundary or source.
@@ -103,28 +103,32 @@ impl Scene {
         self.materials.iter().filter_map(build).collect()
     }
 
-    /// The scheme.
-    pub fn build_scheme(&self, mesh: &Mesh, operators: Operators, kernel: Kernel) -> Scheme {
+    /// Time integration.
+    fn integration(&self) -> Integration {
         let (n, n_t) = (self.scheme.degree, self.scheme.time_degree);
-        let method = match self.scheme.method {
+        match self.scheme.method {
             Method::RkDgfem => Integration::RungeKutta(Tableau::of_degree(n_t)),
             Method::AderDgmpm | Method::AderDgfem => {
                 Integration::Ader { time: TimeBasis::new(n_t), sweeps: n.max(n_t) + 1 }
             }
-        };
+        }
+    }
+
+    /// The scheme.
+    pub fn build_scheme(&self, mesh: &Mesh, operators: Operators, kernel: Kernel) -> Scheme {
         let condition = |group: &String| self.boundaries.iter().find(|b| b.group == *group).map(condition);
         // `check_groups` has refused groups without a condition.
         let free = || Box::new(boundary::Free) as Box<dyn boundary::Boundary>;
         let boundaries = mesh.edge_groups.iter().map(|group| condition(group).unwrap_or_else(free)).collect();
         let curl_rate = match self.curl {
-            Curl::Lcf { alpha } if n > 0 => Some(alpha * n as f64),
+            Curl::Lcf { alpha } if self.scheme.degree > 0 => Some(alpha * self.scheme.degree as f64),
             _ => None,
         };
         let sources = self.sources.iter().map(|s| self.source(s)).collect();
         Scheme {
             operators,
             laws: self.build_laws(),
-            method,
+            method: self.integration(),
             flux: self.scheme.flux,
             boundaries,
             sources,
@@ -184,12 +188,19 @@ impl Scene {
     ///
     /// # Errors
     /// A step beyond the stability limit.
-    pub fn settings(&self, integration: &Integration) -> Result<Settings> {
-        let n = self.scheme.degree;
-        let limit = cfl::limit(integration, n);
+    pub fn settings(&self) -> Result<Settings> {
+        let (n, integration) = (self.scheme.degree, self.integration());
+        let limit = cfl::limit(&integration, n);
+        if limit == 0.0 {
+            return Err(self.error(
+                "scheme.time_degree",
+                format!("explicit Euler (time_degree = 0) is unstable at every step for degree {n}"),
+                "give time_degree from 1 to 6 (the default is the degree), or degree = 0",
+            ));
+        }
         let (key, safety) = match self.scheme.step {
             Step::Safety(safety) => ("scheme.safety", safety),
-            Step::Cfl(cfl) => ("scheme.cfl", cfl::safety_of_cfl(cfl, integration, n)),
+            Step::Cfl(cfl) => ("scheme.cfl", cfl::safety_of_cfl(cfl, &integration, n)),
         };
         if safety > 1.0 {
             let allowed = limit * (2 * n + 1) as f64;
@@ -202,26 +213,40 @@ impl Scene {
         Ok(Settings { end: self.end, courant: safety * limit })
     }
 
+    /// Whether all lines of the outputs lie in the mesh.
+    ///
+    /// # Errors
+    /// A line that leaves it, with its place in the scene.
+    pub fn check_lines(&self, mesh: &Mesh) -> Result<()> {
+        for (i, output) in self.outputs.iter().enumerate() {
+            let Some(samples) = samples(output) else { continue };
+            samples.check(mesh).map_err(|outside| {
+                let key = if outside.sample == 0 { "from" } else { "to" };
+                self.error(&format!("output.{i}.{key}"), outside.to_string(), Outside::REMEDY)
+            })?;
+        }
+        Ok(())
+    }
+
     /// The observers that the scene asks for, writing into a run folder; and a ledger in any case.
     ///
     /// # Errors
-    /// A line that leaves the mesh; files that cannot be made.
+    /// A line that leaves the mesh ([`Scene::check_lines`] has its place); files that cannot be made.
     pub fn observers(&self, mesh: &Mesh, folder: &Folder) -> Result<Vec<Box<dyn Observer>>> {
         let material = self.material_of_cells(mesh);
         let mut out: Vec<Box<dyn Observer>> = Vec::new();
         for output in &self.outputs {
             let schedule = schedule(output);
-            out.push(match output.what {
-                What::Fields => Box::new(Snapshots::new(&folder.snapshots(), schedule)),
-                What::Ledger => Box::new(Ledger::create(&folder.ledger(), schedule)?),
-                What::Line { from, to, samples } => {
-                    let samples = Samples { ends: [from, to], count: samples, fields: output.fields.clone() };
+            out.push(match (output.what, samples(output)) {
+                (What::Ledger, _) => Box::new(Ledger::create(&folder.ledger(), schedule.with_end())?),
+                (_, Some(samples)) => {
                     Box::new(Line::create(&folder.line(&output.name), mesh, &material, &samples, schedule)?)
                 }
+                _ => Box::new(Snapshots::new(&folder.snapshots(), schedule)),
             });
         }
         if !self.outputs.iter().any(|output| output.what == What::Ledger) {
-            let schedule = Schedule::new(crate::observe::When::EverySteps(LEDGER_STEPS), false);
+            let schedule = Schedule::new(crate::observe::When::EverySteps(LEDGER_STEPS), false).with_end();
             out.push(Box::new(Ledger::create(&folder.ledger(), schedule)?));
         }
         Ok(out)
@@ -233,6 +258,12 @@ impl Scene {
         let all = || Field::NAMES.iter().map(|(_, field)| *field).filter(|f| *f != Field::Displacement).collect();
         asked.unwrap_or_else(all)
     }
+}
+
+/// What a line output samples.
+fn samples(output: &Output) -> Option<Samples> {
+    let What::Line { from, to, samples } = output.what else { return None };
+    Some(Samples { ends: [from, to], count: samples, fields: output.fields.clone() })
 }
 
 fn schedule(output: &Output) -> Schedule {
@@ -274,7 +305,7 @@ fn layout(layout: &Layout) -> seed::Layout {
 /// # Errors
 /// Points outside of the mesh, with their numbers; rows that are no pair of numbers.
 pub fn read_cloud(path: &Path, mesh: &Mesh) -> Result<Cloud> {
-    if store::is_store(path) {
+    if store::is_meant_as_store(path) {
         return cloud_file::read_cloud_of(path, mesh);
     }
     let text = std::fs::read_to_string(path).map_err(|why| {

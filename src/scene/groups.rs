@@ -15,11 +15,26 @@ impl Scene {
         self.check_exist("material", "cells", materials.iter().copied(), cell_groups)?;
         self.check_exist("source", "cells", sources, cell_groups)?;
         self.check_exist("boundary", "boundary edges", boundaries.iter().copied(), edge_groups)?;
+        self.check_sources(cell_groups)?;
         if !materials.contains(&None) {
             let remedy = "every cell needs a material: add one, or leave out `group` of the only one";
             self.check_covered("material", &materials, cell_groups, remedy)?;
         }
         self.check_covered("boundary", &boundaries, edge_groups, "for a boundary without load say kind = \"free\"")
+    }
+
+    /// A source on a group acts on the cells of a material.
+    fn check_sources(&self, cell_groups: &[String]) -> Result<()> {
+        let material_of = |group: &Option<String>| self.materials.iter().any(|m| m.group == *group);
+        let lost = |group: &Option<String>| group.is_some() && cell_groups.len() > 1 && !material_of(group);
+        match self.sources.iter().enumerate().find(|(_, source)| lost(&source.group)) {
+            Some((i, source)) => Err(self.error(
+                &format!("source.{i}.group"),
+                format!("the group \"{}\" has no [[material]] of its own", source.group.as_deref().unwrap_or_default()),
+                "a source acts on the cells of a material: give the group one, or leave out `group`",
+            )),
+            None => Ok(()),
+        }
     }
 
     fn check_exist<'a>(

@@ -11,8 +11,11 @@ pub struct Law {
     /// Its parameters.
     pub parameters: &'static [Parameter],
     /// Makes it from its parameters, by name, and rho0 (kg/m^3).
-    pub build: fn(&dyn Fn(&str) -> f64, f64) -> material::Law,
+    pub build: Build,
 }
+
+/// Parameters by name and rho0 to a law.
+pub type Build = fn(&dyn Fn(&str) -> f64, f64) -> material::Law;
 
 /// A parameter of a law.
 #[derive(Debug)]

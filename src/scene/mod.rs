@@ -11,6 +11,7 @@ mod laws;
 mod names;
 mod origin;
 mod outputs;
+mod portable;
 mod read;
 mod reader;
 mod sets;
@@ -326,11 +327,16 @@ impl Scene {
         }
     }
 
+    /// Where the value of a key stands.
+    fn place(&self, key: &str) -> Place {
+        let path: Vec<String> = key.split('.').map(str::to_owned).collect();
+        self.origin.place(&path, Part::Value)
+    }
+
     /// An error at the value of a key such as `scheme.cfl` or `boundary.0.group`, for checks that need
     /// more than the scene.
     pub fn error(&self, key: &str, what: impl Into<String>, remedy: impl Into<String>) -> Error {
-        let path: Vec<String> = key.split('.').map(str::to_owned).collect();
-        self.origin.error(&path, Part::Value, what, remedy)
+        Error::at(self.place(key), what, remedy)
     }
 }
 

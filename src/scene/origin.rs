@@ -49,7 +49,7 @@ impl Origin {
     }
 
     /// The place of a key, or of the nearest table around it that exists.
-    fn place(&self, path: &[String], part: Part) -> Place {
+    pub(super) fn place(&self, path: &[String], part: Part) -> Place {
         let (depth, byte) = locate(&self.text, path, part);
         let common = |set: &[String]| set.iter().zip(path).take_while(|(a, b)| a == b).count();
         let blamed = self.sets.iter().rev().find(|(set, _)| common(set) == set.len() || common(set) > depth);

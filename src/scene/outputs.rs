@@ -1,14 +1,39 @@
 //! The outputs of a scene: kind, when, fields.
 
 use super::reader::{Check, FINITE, POSITIVE, Reader};
-use super::{Field, Output, What, When};
+use super::{Field, Output, Scene, What, When};
 use crate::error::Result;
 
+impl Scene {
+    /// What is odd and no error: outputs that lie after the end of the run, as after `--set time.end=..`.
+    pub fn warnings(&self) -> Vec<String> {
+        let end = self.end;
+        let warning = |(i, output): (usize, &Output)| {
+            let (key, what) = match &output.when {
+                When::At(times) => {
+                    let after = times.iter().filter(|time| **time > end).count();
+                    let of = times.len();
+                    let what = format!(
+                        "{after} of {of} times lie after the end of the run, {end:e} s: its last state stands for them"
+                    );
+                    ("at", (after > 0).then_some(what)?)
+                }
+                When::Every(interval) if *interval > end => {
+                    ("every", format!("longer than the run, {end:e} s: only its start is recorded"))
+                }
+                _ => return None,
+            };
+            Some(format!("{}`{key}` of output \"{}\": {what}", self.place(&format!("output.{i}.{key}")), output.name))
+        };
+        self.outputs.iter().enumerate().filter_map(warning).collect()
+    }
+}
+
 /// Reads every `[[output]]`.
-pub(super) fn outputs(tables: Vec<Reader>, end: f64) -> Result<Vec<Output>> {
+pub(super) fn outputs(tables: Vec<Reader>) -> Result<Vec<Output>> {
     let mut outputs: Vec<Output> = Vec::with_capacity(tables.len());
     for mut table in tables {
-        let output = output(&mut table, end)?;
+        let output = output(&mut table)?;
         let ledger = |output: &Output| output.what == What::Ledger;
         if ledger(&output) && outputs.iter().any(ledger) {
             return Err(table.wrong("kind", "two [[output]] of kind \"ledger\"", "one ledger records all: remove one"));
@@ -31,13 +56,13 @@ enum Kind {
 
 const KINDS: [(&str, Kind); 3] = [("fields", Kind::Fields), ("line", Kind::Line), ("ledger", Kind::Ledger)];
 
-fn output(table: &mut Reader, end: f64) -> Result<Output> {
+fn output(table: &mut Reader) -> Result<Output> {
     let kind = table.choice("kind", &KINDS, &[])?;
     let kind = kind.ok_or_else(|| table.missing("kind", "\"fields\", \"line\" or \"ledger\""))?;
     let kind_name = KINDS[kind as usize].0;
     table.of_kind(kind_name);
     let name = if kind == Kind::Ledger { None } else { table.text("name")? };
-    let when = when(table, end)?;
+    let when = when(table)?;
     let exact_times = match when {
         Some(When::EverySteps(_)) => None,
         _ => table.boolean("exact_times")?,
@@ -94,7 +119,7 @@ fn line(table: &mut Reader) -> Result<What> {
 }
 
 /// The keys at, every, every_steps: at most one.
-fn when(table: &mut Reader, end: f64) -> Result<Option<When>> {
+fn when(table: &mut Reader) -> Result<Option<When>> {
     let at = table.numbers("at", TIME)?;
     let every = table.number("every", POSITIVE)?;
     let every_steps = table.integer("every_steps", 1..=usize::MAX)?;
@@ -102,13 +127,6 @@ fn when(table: &mut Reader, end: f64) -> Result<Option<When>> {
     if let [first, second, ..] = given[..] {
         let what = format!("an [[output]] has both `{first}` and `{second}`");
         return Err(table.wrong(second, what, "keep one of at, every, every_steps"));
-    }
-    let after = "outputs end with the run: lengthen `time.end`, or remove what comes after it";
-    if let Some(i) = at.iter().flatten().position(|time| *time > end) {
-        return Err(table.wrong_entry("at", i, format!("this time lies after the end of the run, {end} s"), after));
-    }
-    if every.is_some_and(|every| every > end) {
-        return Err(table.wrong("every", format!("`every` is longer than the run, {end} s"), after));
     }
     let at = at.map(|mut times| {
         times.sort_by(f64::total_cmp);
@@ -118,7 +136,8 @@ fn when(table: &mut Reader, end: f64) -> Result<Option<When>> {
     Ok(at.or(every.map(When::Every)).or(every_steps.map(When::EverySteps)))
 }
 
-const TIME: Check = Check { range: "greater than 0 (s)", holds: |time| time > 0.0 };
+/// 0 is the initial state.
+const TIME: Check = Check { range: "not negative (s)", holds: |time| time >= 0.0 };
 
 fn fit_for_a_file(name: &str) -> bool {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');

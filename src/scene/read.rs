@@ -49,7 +49,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         curl: curl(curl_table.as_mut(), scheme.degree)?,
         scheme,
         end,
-        outputs: super::outputs::outputs(output_tables, end)?,
+        outputs: super::outputs::outputs(output_tables)?,
         origin: Origin::default(),
     };
     Ok(Scene { origin, ..scene })

@@ -93,7 +93,7 @@ impl Scheme {
         for lane in 0..blocks.count[block] {
             let number = |k: usize, a: usize| u[k * n + a].0[lane];
             let finite = (0..stride).all(|k| u[k].0[lane].is_finite());
-            let points = self.from_nodes(block, lane);
+            let points = self.points_from_nodes(block, lane);
             let count = points.as_ref().map_or(n, |m| m.rows);
             for point in 0..count {
                 let at = |k: usize| match &points {
@@ -116,7 +116,7 @@ impl Scheme {
     }
 
     /// Phi_a(xi_p) of one lane of a block; none for RK, where points are nodes.
-    fn from_nodes(&self, block: usize, lane: usize) -> Option<Matrix<f64>> {
+    fn points_from_nodes(&self, block: usize, lane: usize) -> Option<Matrix<f64>> {
         let pool = &self.operators.points.as_ref()?.pool;
         Some(match pool.share[block] {
             Share::Shared(k) => pool.shared[k].from_nodes.clone(),

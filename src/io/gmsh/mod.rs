@@ -19,6 +19,7 @@ use crate::error::Result;
 use crate::mesh::Mesh;
 
 pub use error::{At, Error};
+pub use kinds::Kind;
 pub use write::{to_text, write};
 
 /// Reads a mesh from an MSH file.

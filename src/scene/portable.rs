@@ -1,0 +1,123 @@
+//! The text of a scene for its run folder, so that the folder can be moved and run again.
+
+use super::{Layout, Mesh, Scene};
+use toml_edit::{DocumentMut, InlineTable, Item, Table, value};
+
+/// Keys of `[[material]]` that say where its points stand.
+const POINTS: [&str; 4] = ["layout", "per_direction", "seed", "amount"];
+
+impl Scene {
+    /// The text as run, in which the mesh is the file `mesh.h5` beside it if it came from a file, and so the cloud
+    /// `cloud.h5`. `mesh` and `cloud` say that other files than those of the scene were given.
+    pub fn portable_toml(&self, mesh: bool, cloud: bool) -> String {
+        // The text has been parsed before.
+        let Ok(mut document) = self.to_toml().parse::<DocumentMut>() else { return self.to_toml() };
+        if mesh || matches!(self.mesh, Mesh::File(_)) {
+            let table = table(&mut document, "mesh");
+            table.remove("rectangle");
+            put(table, "file", "mesh.h5");
+        }
+        if cloud || matches!(self.cloud.layout, Layout::File(_)) {
+            let table = table(&mut document, "cloud");
+            ["per_direction", "seed", "amount"].iter().for_each(|key| drop(table.remove(key)));
+            put(table, "layout", "file");
+            put(table, "path", "cloud.h5");
+            remove_points_of_materials(&mut document);
+        }
+        document.to_string()
+    }
+}
+
+/// The table of a name, made where it is missing.
+fn table<'a>(document: &'a mut DocumentMut, name: &str) -> &'a mut dyn toml_edit::TableLike {
+    let item = document.entry(name).or_insert(Item::Table(Table::new()));
+    if !item.is_table_like() {
+        *item = Item::Table(Table::new());
+    }
+    item.as_table_like_mut().expect("it has just been made a table")
+}
+
+/// Gives a key a text, keeping the comments around the old value.
+fn put(table: &mut dyn toml_edit::TableLike, key: &str, text: &str) {
+    let mut new = value(text);
+    if let (Some(new), Some(old)) = (new.as_value_mut(), table.get(key).and_then(Item::as_value)) {
+        *new.decor_mut() = old.decor().clone();
+    }
+    table.insert(key, new);
+}
+
+/// The points of all materials come from the file.
+fn remove_points_of_materials(document: &mut DocumentMut) {
+    let Some(materials) = document.get_mut("material") else { return };
+    if let Some(tables) = materials.as_array_of_tables_mut() {
+        tables.iter_mut().for_each(|table| POINTS.iter().for_each(|key| drop(table.remove(key))));
+    } else if let Some(list) = materials.as_array_mut() {
+        let tables = list.iter_mut().filter_map(|entry| entry.as_inline_table_mut());
+        tables.for_each(|table: &mut InlineTable| POINTS.iter().for_each(|key| drop(table.remove(key))));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    const SCENE: &str = r#"[mesh]
+rectangle = { size = [1, 1], cells = [2, 2] }
+[[material]]
+law = "neo-hookean"   # of the paper
+layout = "jitter"
+seed = 3
+young = 1
+poisson = 0
+density = 1
+[[boundary]]
+group = "left"
+kind = "free"
+[[boundary]]
+group = "right"
+kind = "free"
+[[boundary]]
+group = "bottom"
+kind = "free"
+[[boundary]]
+group = "top"
+kind = "free"
+[scheme]
+method = "rk-dgfem"
+degree = 1
+[time]
+end = 1
+"#;
+
+    fn parse(text: &str) -> Scene {
+        Scene::parse(text, Path::new("a/case.toml"), &[]).unwrap()
+    }
+
+    #[test]
+    fn a_scene_without_files_stays_as_it_is() {
+        let scene = parse(SCENE);
+        assert_eq!(scene.portable_toml(false, false), scene.to_toml());
+    }
+
+    #[test]
+    fn files_take_the_place_of_what_they_replace() {
+        let text = parse(SCENE).portable_toml(true, true);
+        let scene = parse(&text);
+        assert_eq!(scene.mesh_path(), Some("a/mesh.h5".into()));
+        assert_eq!(scene.cloud_path(), Some("a/cloud.h5".into()));
+        assert!(text.contains("# of the paper") && !text.contains("jitter"), "{text}");
+    }
+
+    #[test]
+    fn a_scene_with_files_finds_them_beside_it() {
+        let file = SCENE.replace("rectangle = { size = [1, 1], cells = [2, 2] }", "file = \"../far/a.msh\" # the mesh");
+        let file = file.replace("layout = \"jitter\"\nseed = 3\n", "");
+        let text =
+            parse(&format!("{file}[cloud]\nlayout = \"file\"\npath = \"/far/b.csv\"\n")).portable_toml(false, false);
+        let scene = parse(&text);
+        assert_eq!(scene.mesh_path(), Some("a/mesh.h5".into()));
+        assert_eq!(scene.cloud_path(), Some("a/cloud.h5".into()));
+        assert!(text.contains("file = \"mesh.h5\" # the mesh"), "{text}");
+    }
+}
