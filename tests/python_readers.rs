@@ -1,12 +1,9 @@
 //! What is exported is read back, bit for bit, by meshio, VTK (pyvista), h5py and DOLFINx.
-//!
-//! Python is `$DGMPM_PYTHON`, else `.venv/bin/python`; without one the test says that it skips, or fails where
-//! `DGMPM_REQUIRE_PYTHON=1`. DOLFINx is looked for in `$DGMPM_DOLFINX_PYTHON`, else `/usr/bin/python3`.
 
 mod io_samples;
+mod python;
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
 use dgmpm::io::grid::Field;
 use dgmpm::io::{cloud_file, mesh_file, pvd, snapshot, vtu, xdmf};
@@ -69,40 +66,11 @@ fn write_all(folder: &Path) {
     write_raw(&pipeline, "nodes", mesh.nodes.as_flattened());
 }
 
-fn python() -> Option<PathBuf> {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR")).join(".venv/bin/python");
-    let named = std::env::var_os("DGMPM_PYTHON").map(PathBuf::from);
-    named.or_else(|| here.exists().then_some(here))
-}
-
-/// Runs a script on a folder and shows what it prints.
-fn run(python: &Path, script: &str, folder: &Path) {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python").join(script);
-    let output = Command::new(python).arg(&script).arg(folder).output().unwrap();
-    println!("{}", String::from_utf8_lossy(&output.stdout));
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{} failed:\n{errors}", script.display());
-}
-
-/// Says why a part is skipped; fails instead where Python is required.
-fn skip(why: &str) {
-    assert!(std::env::var("DGMPM_REQUIRE_PYTHON").as_deref() != Ok("1"), "{why}");
-    println!("SKIP python_readers: {why}");
-}
-
 #[test]
 fn other_programs_read_the_files() {
+    let Some(python) = python::python() else { return };
     let folder = tempfile::tempdir().unwrap();
     write_all(folder.path());
-    match python() {
-        Some(python) => run(&python, "test_readers.py", folder.path()),
-        None => return skip("no Python: set DGMPM_PYTHON, or make .venv"),
-    }
-    let dolfinx = PathBuf::from(std::env::var_os("DGMPM_DOLFINX_PYTHON").unwrap_or("/usr/bin/python3".into()));
-    let probe = Command::new(&dolfinx).args(["-c", "import dolfinx"]).output();
-    if probe.is_ok_and(|p| p.status.success()) {
-        run(&dolfinx, "dolfinx_mesh.py", folder.path());
-    } else {
-        println!("SKIP python_readers: `{}` has no DOLFINx", dolfinx.display());
-    }
+    python::run(&python, "tests/python/test_readers.py", [folder.path()]);
+    python::run_dolfinx("tests/python/dolfinx_mesh.py", [folder.path()]);
 }
