@@ -63,21 +63,19 @@ def draw_maps(runs, degree, time, deformed, out):
     # The scale leaves out the last half percent, which single corners would stretch it by.
     limit = max(np.percentile(abs(values), 99.5) for *_, values in maps.values())
     figure, axes = plt.subplots(
-        1, len(maps), figsize=(3.4 * len(maps) + 0.8, 3.4), sharey=True, squeeze=False, layout="constrained"
+        1, len(maps), figsize=(3.2 * len(maps) + 0.9, 3.7), sharey=True, squeeze=False, layout="compressed"
     )
-    for ax, (method, (_, x, y, triangles, values)) in zip(axes[0], maps.items()):
+    for ax, (method, (t, x, y, triangles, values)) in zip(axes[0], maps.items()):
         image = ax.tripcolor(
             x, y, triangles, values, shading="gouraud", cmap=PALETTE, vmin=-limit, vmax=limit, rasterized=True
         )
         ax.set(
-            title=f"{METHODS[method][0]}, S{degree}T{degree}",
+            title=f"{METHODS[method][0]}, S{degree}T{degree}, t = {1e3 * t:.4g} ms",
             xlabel="$x_1$ (m)" if deformed else "$X_1$ (m)",
             aspect="equal",
         )
     axes[0, 0].set_ylabel("$x_2$ (m)" if deformed else "$X_2$ (m)")
-    figure.colorbar(image, ax=axes, label=r"$\sigma_{11}$ (GPa)", extend="both")
-    shown = next(iter(maps.values()))[0]
-    figure.suptitle(f"t = {shown:.3e} s", fontsize=10)
+    figure.colorbar(image, ax=axes, label=r"$\sigma_{11}$ (GPa)", extend="both", pad=0.02)
     return save(figure, out / MAP_FIGURES.get(degree, f"map_S{degree}T{degree}"))
 
 

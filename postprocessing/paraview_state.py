@@ -1,7 +1,8 @@
 """Opens an exported run in ParaView: the grid on its deformed shape, coloured by stress, with the material points.
 
-Without a window:        pvbatch postprocessing/paraview_state.py RUN [OUT]     (on a machine without a
-                         display put `xvfb-run -a` before it: Debian's ParaView needs an X server)
+Without a window:        pvbatch postprocessing/paraview_state.py RUN [OUT]
+Without a display:       xvfb-run -a -s "-noreset -screen 0 1600x1200x24" pvbatch ...     (Debian's ParaView needs an X
+                         server, and opens it twice: one that resets in between refuses the second time)
 In a window:             paraview --script=postprocessing/paraview_state.py     (the run from DGMPM_RUN)
 As a macro:              Macros > Import new macro; then DGMPM_RUN, or the folder that ParaView was started in
 
@@ -32,7 +33,7 @@ COLOURS = "Cool to Warm (Extended)"
 WARP = 1.0  # factor on the displacement
 SUBDIVISION = 3  # of the curved, high-order cells where they are drawn
 POINT_SIZE = 0.006  # radius in m, 0 for no points
-PICTURE = [1600, 1200]
+PICTURE = [1400, 1100]
 
 
 def export_folder(run):
@@ -70,6 +71,7 @@ def show_grid(folder, view):
     surface = Show(grid, view)
     surface.Representation = "Surface"
     surface.NonlinearSubdivisionLevel = SUBDIVISION
+    surface.Ambient, surface.Diffuse = 1.0, 0.0  # a lamp would change the colours
     ColorBy(surface, ("POINTS", FIELD))
     colours = GetColorTransferFunction(FIELD)
     if component_index() >= 0:  # by number: not every version names the components of a tensor
@@ -79,6 +81,7 @@ def show_grid(folder, view):
     bar = GetScalarBar(colours, view)
     bar.Title, bar.ComponentTitle = FIELD.replace("_", " "), COMPONENT or ""
     bar.TitleColor = bar.LabelColor = [0.0, 0.0, 0.0]
+    bar.WindowLocation, bar.Position, bar.ScalarBarLength = "Any Location", [0.87, 0.2], 0.6
     surface.SetScalarBarVisibility(view, True)
 
 
@@ -110,6 +113,10 @@ def main(run, out):
     scene.GoToLast()
     view.InteractionMode = "2D"
     ResetCamera(view)
+    view.CameraParallelScale *= 0.78  # a little larger, and to the left of the colour bar
+    shift = 0.12 * view.CameraParallelScale
+    view.CameraPosition = [view.CameraPosition[0] + shift, *view.CameraPosition[1:]]
+    view.CameraFocalPoint = [view.CameraFocalPoint[0] + shift, *view.CameraFocalPoint[1:]]
     Render(view)
     if out:
         SaveScreenshot(out + ".png", view, ImageResolution=PICTURE)

@@ -1,7 +1,7 @@
 """A picture of any exported run without ParaView: one component of one field, on the deformed shape.
 
 usage: render.py RUN [--field cauchy_stress] [--component 11] [--time T] [--warp 1]
-                 [--points] [--edges] [--out FILE.png]
+                 [--points] [--edges] [--dpi 160] [--out FILE.png]
 """
 
 import argparse
@@ -48,7 +48,7 @@ def default_component(name, components):
     return {9: "11", 3: "norm", 1: ""}[components]
 
 
-def draw(run, field="cauchy_stress", component=None, time=None, warp=1.0, points=False, edges=False, out="render.png"):
+def draw(run, field="cauchy_stress", component=None, time=None, warp=1.0, points=False, edges=False, dpi=160, out="render.png"):
     """Draws one step of a run into a PNG (or what the name of the file says)."""
     t, path = exported.step_at(run, time)
     grid = exported.read_grid(path)
@@ -80,9 +80,9 @@ def draw(run, field="cauchy_stress", component=None, time=None, warp=1.0, points
         ax.scatter(*position.T, s=0.6, c="k", linewidths=0, alpha=0.7)
     label = symbol + (f"$_{{{component}}}$" if component.isdigit() else "") + (f" ({unit})" if unit else "")
     figure.colorbar(image, ax=ax, label=label, extend="both", shrink=0.9)
-    ax.set(aspect="equal", xlabel="$x_1$ (m)", ylabel="$x_2$ (m)", title=f"t = {t:.4e} s")
+    ax.set(aspect="equal", xlabel="$x_1$ (m)", ylabel="$x_2$ (m)", title=f"t = {1e3 * t:.4g} ms")
     Path(out).parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(out, dpi=160)
+    figure.savefig(out, dpi=dpi)
     plt.close(figure)
 
 
@@ -95,6 +95,7 @@ def main():
     parser.add_argument("--warp", type=float, default=1.0, help="factor on the displacement, 0 for the initial shape")
     parser.add_argument("--points", action="store_true", help="draw the material points")
     parser.add_argument("--edges", action="store_true", help="draw the edges of the cells")
+    parser.add_argument("--dpi", type=int, default=160)
     parser.add_argument("--out", default="render.png")
     args = parser.parse_args()
     draw(**vars(args))

@@ -79,13 +79,13 @@ fn impact_agrees_with_live_dolfinx_on_the_exported_mesh() {
     }
 }
 
-/// The issue allows 3 %.
+/// Measured (sigma11, v1): .53 %, .72 % and .54 %, .80 %; the issue allows 3 %.
 #[test]
 fn impact_on_an_unstructured_mesh_agrees_with_the_stored_references() {
     let Some(python) = python::python() else { return };
     let run = exported("unstructured", Path::new("meshes/square_unstructured.toml"), EARLY);
     for suffix in ["_fv", "_fe"] {
-        compare(&python, &run, &stored_blocks(), suffix, "0.02");
+        compare(&python, &run, &stored_blocks(), suffix, "0.012");
     }
 }
 
@@ -166,14 +166,16 @@ fn norms_of_the_smooth_box_are_those_of_the_spectral_solution() {
     }
 }
 
-/// All fields of grid and points, on unstructured cells. Readers must agree bit by bit; the differences from numpy's
-/// own evaluation are rounding: measured up to 4e-14 of the largest value.
+/// All fields of grid and points, on unstructured cells under strong deformation. Readers must agree bit by bit; the
+/// differences from numpy's own evaluation are rounding: measured up to 4e-14 of the largest value.
 #[test]
 fn every_exported_file_is_read_back_as_the_snapshots_have_it() {
     let Some(python) = python::python() else { return };
+    let deformed = r#"initial.deformation=["1.04+0.02*x","0.03","-0.02*y","0.97"]"#;
+    let moving = r#"initial.velocity=["100*y","-50*x"]"#;
     for degree in 1..=3 {
         let degree_set = format!("scheme.degree={degree}");
-        let sets = [&degree_set, "time.end=6e-5", "output.0.every=3e-5"];
+        let sets = [deformed, moving, &degree_set, "time.end=2e-5", "output.0.every=1e-5"];
         let run = exported(&format!("plate-{degree}"), Path::new("meshes/plate_hole.toml"), &sets);
         python::run(&python, "tests/python/exported_run.py", [run.as_os_str(), "--limit".as_ref(), "1e-12".as_ref()]);
         python::run_dolfinx("tests/python/dolfinx_run.py", [&run]);

@@ -108,16 +108,20 @@ class Run:
         return (2 * det / length).min(axis=1)
 
 
-def error(values, expected):
+# Stresses are differences of terms as large as the moduli, whose rounding stays where they cancel.
+FLOOR = {"piola": 1e-2 * impact.KAPPA, "cauchy_stress": 1e-2 * impact.KAPPA, "von_mises": 1e-2 * impact.KAPPA}
+
+
+def error(values, expected, floor=1e-300):
     """Largest difference over the largest magnitude."""
     values = np.asarray(values).reshape(len(expected), -1)
-    return np.abs(values - expected.reshape(len(expected), -1)).max() / max(np.abs(expected).max(), 1e-300)
+    return np.abs(values - expected.reshape(len(expected), -1)).max() / max(np.abs(expected).max(), floor)
 
 
 def check_values(name, data, expected, limit):
     """Fields of a file against numpy's."""
     check(f"{name}: its fields are {', '.join(expected)}", set(data) == set(expected))
-    worst = max(((error(data[key], values), key) for key, values in expected.items()), default=(0.0, "-"))
+    worst = max(((error(data[key], values, FLOOR.get(key, 1e-300)), key) for key, values in expected.items()), default=(0.0, "-"))
     check(f"{name}: all fields as numpy has them (largest difference {worst[0]:.1e}, {worst[1]})", worst[0] < limit)
 
 

@@ -1,0 +1,61 @@
+//! The README says what is so: its commands run, its scene is accepted.
+
+use dgmpm::scene::Scene;
+use std::path::Path;
+use std::process::Command;
+
+const README: &str = include_str!("../README.md");
+
+/// The fenced blocks of a language in a section.
+fn blocks<'a>(section: &str, language: &str) -> Vec<&'a str> {
+    let start = README.find(&format!("\n## {section}\n")).unwrap();
+    let text = &README[start + 4..];
+    let text = text.find("\n## ").map_or(text, |end| &text[..end]);
+    let fence = format!("```{language}\n");
+    text.split(&fence).skip(1).map(|block| block.split("```").next().unwrap()).collect()
+}
+
+/// In a folder with a copy of `meshes/`, the program on the path. Two cells a direction and one step would do: the runs
+/// are cut short, for what is tested are the words.
+#[test]
+fn commands_of_the_pipeline_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes");
+    std::fs::create_dir(folder.path().join("meshes")).unwrap();
+    for entry in std::fs::read_dir(meshes).unwrap() {
+        let path = entry.unwrap().path();
+        std::fs::copy(&path, folder.path().join("meshes").join(path.file_name().unwrap())).unwrap();
+    }
+    for scene in ["square_impact", "plate_hole"] {
+        let path = folder.path().join(format!("meshes/{scene}.toml"));
+        let text = std::fs::read_to_string(&path).unwrap();
+        let short = text.replace("1.77e-3", "2e-5").replace("[3e-4, 6e-4, 2e-5]", "[2e-5]");
+        std::fs::write(&path, short.replace("6e-4", "2e-5").replace("5e-5", "1e-5")).unwrap();
+    }
+    let program = Path::new(env!("CARGO_BIN_EXE_dgmpm")).parent().unwrap();
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
+    let commands = blocks("The pipeline", "sh");
+    assert_eq!(commands.len(), 2);
+    for block in commands {
+        let run = Command::new("sh").args(["-e", "-c", block]).env("PATH", &path).current_dir(folder.path()).output();
+        let run = run.unwrap();
+        assert!(run.status.success(), "{block}\n{}", String::from_utf8_lossy(&run.stderr));
+    }
+    let files = ["scene.toml", "mesh.h5", "cloud.h5", "operators.h5", "snapshots", "ledger.csv", "summary.json"];
+    let exported =
+        ["grid.pvd", "points.pvd", "series.xdmf", "mesh.xdmf", "boundary.xdmf"].map(|f| format!("export/{f}"));
+    for run in ["square_impact", "plate"] {
+        for file in files.iter().copied().chain(exported.iter().map(String::as_str)) {
+            let path = folder.path().join("runs").join(run).join(file);
+            // Matrices that `--operators` gives are used where they are.
+            assert!(path.exists() || (run == "plate" && file == "operators.h5"), "{}", path.display());
+        }
+    }
+    assert!(folder.path().join("runs/square_impact/lines/bottom.csv").exists());
+}
+
+#[test]
+fn the_scene_is_accepted() {
+    let [scene] = blocks("A scene, key by key", "toml")[..] else { panic!("one scene") };
+    Scene::parse(scene, Path::new("meshes/readme.toml"), &[]).unwrap();
+}
