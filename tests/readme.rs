@@ -15,8 +15,7 @@ fn blocks<'a>(section: &str, language: &str) -> Vec<&'a str> {
     text.split(&fence).skip(1).map(|block| block.split("```").next().unwrap()).collect()
 }
 
-/// In a folder with a copy of `meshes/`, the program on the path. Two cells a direction and one step would do: the runs
-/// are cut short, for what is tested are the words.
+/// In a folder with a copy of `meshes/`, the program on the path; the runs are cut short.
 #[test]
 fn commands_of_the_pipeline_run() {
     let folder = tempfile::tempdir().unwrap();
