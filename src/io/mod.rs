@@ -16,6 +16,7 @@ pub mod hdf5;
 pub mod mesh_file;
 pub mod operators_file;
 pub mod pending;
+pub mod points;
 pub mod pvd;
 pub mod seal;
 pub mod snapshot;

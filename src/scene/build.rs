@@ -6,7 +6,7 @@ use super::{
 use crate::boundary::{self, Data};
 use crate::cloud::{self, Cloud, seed};
 use crate::error::{Error, Place, Result};
-use crate::io::{cloud_file, gmsh, mesh_file, store};
+use crate::io::{cloud_file, gmsh, mesh_file, points, store};
 use crate::lane::Kernel;
 use crate::material::Law;
 use crate::mesh::{self, Mesh};
@@ -300,27 +300,15 @@ fn layout(layout: &Layout) -> seed::Layout {
     }
 }
 
-/// Reads a cloud: `.h5` as written by `dgmpm seed`, else rows x, y of a CSV file.
+/// Reads a cloud: `.h5` as written by `dgmpm seed`, else positions from VTU or CSV.
 ///
 /// # Errors
-/// Points outside of the mesh, with their numbers; rows that are no pair of numbers.
+/// A file that cannot be read; points outside of the mesh, with their numbers.
 pub fn read_cloud(path: &Path, mesh: &Mesh) -> Result<Cloud> {
     if store::is_meant_as_store(path) {
         return cloud_file::read_cloud_of(path, mesh);
     }
-    let text = std::fs::read_to_string(path).map_err(|why| {
-        Error::at(Place::file(path), format!("cannot read the cloud: {why}"), "give a file of points x, y")
-    })?;
-    let mut points = Vec::new();
-    for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-        let numbers: Vec<f64> =
-            line.split([',', ' ', '\t']).filter(|t| !t.is_empty()).map_while(|t| t.parse().ok()).collect();
-        match numbers[..] {
-            [x, y, ..] if x.is_finite() && y.is_finite() => points.push([x, y]),
-            _ if number == 0 => {} // names of the columns
-            _ => return Err(Error::at(Place::line(path, number + 1, 1), "this is not a point", "give x, y in m")),
-        }
-    }
+    let points = points::read(path)?;
     let located = cloud::from_points(mesh, &cloud::Locator::new(mesh), &points);
     located
         .map(|(cloud, _)| cloud)

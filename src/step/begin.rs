@@ -3,8 +3,7 @@
 use super::dense::{add_scaled, apply, gather, scatter};
 use super::predictor::Predictor;
 use super::volume::{self, Metric};
-use super::{Method, Phase, Scheme, Scratch};
-use crate::boundary::TimeNode;
+use super::{Method, Phase, Scheme, Scratch, Stage};
 use crate::lane::{Coefficient, F8, LANES, Lanes, Work};
 use crate::material::Material;
 use crate::mesh::map;
@@ -13,18 +12,8 @@ use crate::state::{State, UNKNOWNS};
 use crate::with_law;
 use std::time::Instant;
 
-/// The stage of a step that is begun.
-pub struct Stage<'a> {
-    /// Its number, from 0.
-    pub number: usize,
-    /// The time nodes over which it averages.
-    pub times: &'a [TimeNode],
-    /// Step, s.
-    pub dt: f64,
-}
-
 /// The work on one block.
-pub struct Block<'a> {
+pub(super) struct Block<'a> {
     /// The scheme.
     pub scheme: &'a Scheme,
     /// The stage.

@@ -1,8 +1,8 @@
 //! `finish`: with the neighbours' traces, flux (3), lift (14), and after the last stage the update (13) and LCF.
 
 use super::volume::Metric;
-use super::{Method, Phase, Scheme, Scratch, Survey, curl, dense};
-use crate::boundary::{FacePoint, TimeNode};
+use super::{Method, Phase, Scheme, Scratch, Stage, Survey, curl, dense};
+use crate::boundary::FacePoint;
 use crate::lane::{F8, LANES, Lanes, Work, load_array};
 use crate::mesh::map;
 use crate::operators::Neighbour;
@@ -11,18 +11,8 @@ use crate::state::State;
 use crate::with_flux;
 use std::time::Instant;
 
-/// The stage of a step that is finished.
-pub struct Stage<'a> {
-    /// Its number, from 0.
-    pub number: usize,
-    /// The time nodes over which boundary data is averaged.
-    pub times: &'a [TimeNode],
-    /// Step, s.
-    pub dt: f64,
-}
-
 /// The work on one block.
-pub struct Block<'a> {
+pub(super) struct Block<'a> {
     /// The scheme.
     pub scheme: &'a Scheme,
     /// The stage.

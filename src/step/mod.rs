@@ -128,6 +128,17 @@ impl Work {
     }
 }
 
+/// A stage of a step; ADER has one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stage<'a> {
+    /// Its number, from 0.
+    pub number: usize,
+    /// The time nodes over which data that depends on time is averaged.
+    pub times: &'a [TimeNode],
+    /// Step, s.
+    pub dt: f64,
+}
+
 /// Runs `body` with the scratch of the current thread. Uncontended: a thread holds one block at a time.
 pub(crate) fn with_scratch<R>(scratch: &[Mutex<Scratch>], body: impl FnOnce(&mut Scratch) -> R) -> R {
     let thread = rayon::current_thread_index().unwrap_or(0) % scratch.len();
@@ -145,14 +156,16 @@ impl Scheme {
                 let mut times = [TimeNode { time: 0.0, weight: 0.0 }; 8];
                 times.iter_mut().zip(time.tau.iter().zip(&time.weights)).for_each(|(t, n)| *t = node(n));
                 let times = &times[..time.len()];
-                self.begin(&begin::Stage { number: 0, times, dt }, state, work);
-                self.finish(&finish::Stage { number: 0, times, dt }, state, survey, work);
+                let stage = Stage { number: 0, times, dt };
+                self.begin(&stage, state, work);
+                self.finish(&stage, state, survey, work);
             }
             Method::RungeKutta(tableau) => {
                 for number in 0..tableau.stages() {
                     let times = [TimeNode { time: state.time + tableau.c[number] * dt, weight: 1.0 }];
-                    self.begin(&begin::Stage { number, times: &times, dt }, state, work);
-                    self.finish(&finish::Stage { number, times: &times, dt }, state, survey, work);
+                    let stage = Stage { number, times: &times, dt };
+                    self.begin(&stage, state, work);
+                    self.finish(&stage, state, survey, work);
                 }
             }
         }
@@ -161,7 +174,7 @@ impl Scheme {
     }
 
     /// Volume term and traces of every block.
-    fn begin(&self, stage: &begin::Stage, state: &State, work: &mut Work) {
+    fn begin(&self, stage: &Stage, state: &State, work: &mut Work) {
         let stride = state.components * self.operators.nodes();
         let traces = 4 * self.operators.line.m * TRACE;
         let (before, now) = work.rates.split_at_mut(stage.number);
@@ -177,7 +190,7 @@ impl Scheme {
     }
 
     /// Fluxes, lift, and after the last stage the update, of every block.
-    fn finish(&self, stage: &finish::Stage, state: &State, survey: &Survey, work: &mut Work) {
+    fn finish(&self, stage: &Stage, state: &State, survey: &Survey, work: &mut Work) {
         let stride = state.components * self.operators.nodes();
         let (before, now) = work.rates.split_at_mut(stage.number);
         let (before, scratch, traces) = (&*before, &work.scratch, &work.traces[..]);
