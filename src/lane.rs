@@ -98,6 +98,14 @@ pub fn load_array<L: Lanes, const K: usize>(from: &[F8]) -> [L; K] {
     out
 }
 
+/// Writes K numbers behind each other.
+#[inline(always)]
+pub fn store_array<L: Lanes, const K: usize>(values: [L; K], to: &mut [F8]) {
+    for (value, to) in values.into_iter().zip(to) {
+        value.store(to);
+    }
+}
+
 /// An entry of an operator matrix: one number for all cells of a block (`f64`: the cells are congruent) or
 /// one for each (`F8`).
 pub trait Coefficient: Copy + Send + Sync {

@@ -1,10 +1,10 @@
 //! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
 
-use super::dense::{add_scaled, apply, gather, scatter};
+use super::dense::{add_scaled, apply, gather, interleave};
 use super::predictor::Predictor;
 use super::volume::{self, Metric};
 use super::{Method, Phase, Scheme, Scratch, Stage};
-use crate::lane::{Coefficient, F8, LANES, Lanes, Work};
+use crate::lane::{Coefficient, F8, LANES, Lanes, Work, store_array};
 use crate::material::Material;
 use crate::mesh::map;
 use crate::operators::{PointMatrices, Points, Share};
@@ -60,10 +60,13 @@ impl Block<'_> {
             add_scaled::<L>(law.density(), &self.scratch.nodes.source, &mut self.rate[4 * n..6 * n]);
         }
         if self.state.has_displacement() {
-            self.rate[UNKNOWNS * n..].copy_from_slice(&self.scratch.nodes.mean[4 * n..6 * n]);
+            for (a, mean) in self.scratch.nodes.mean.as_chunks::<6>().0.iter().enumerate() {
+                self.rate[UNKNOWNS * n + a] = mean[4];
+                self.rate[(UNKNOWNS + 1) * n + a] = mean[5];
+            }
         }
         self.scratch.phases.book(Phase::Volume, &mut clock);
-        volume::traces::<L, M>(law, line, metric, &self.scratch.nodes.mean, self.traces);
+        volume::traces::<L, M>(law, line, metric, &self.scratch.nodes, self.traces);
         self.scratch.phases.book(Phase::Traces, &mut clock);
     }
 
@@ -84,7 +87,8 @@ impl Block<'_> {
             let [f11, f12, f21, f22, p1, p2] = gather::<L, 6>(&self.scratch.nodes.stage, n, a);
             let s = law.stress([f11, f12, f21, f22], &mut []);
             let v = [p1 * inverse_density, p2 * inverse_density];
-            scatter([f11, f12, f21, f22, v[0], v[1], s[0], s[1], s[2], s[3]], &mut self.scratch.nodes.mean, n, a);
+            store_array([f11, f12, f21, f22, v[0], v[1]], &mut self.scratch.nodes.mean[6 * a..6 * a + 6]);
+            store_array(s, &mut self.scratch.nodes.mean_stress[4 * a..4 * a + 4]);
         }
     }
 
@@ -102,7 +106,8 @@ impl Block<'_> {
         let n = self.scheme.operators.nodes();
         let stride = self.rate.len();
         let start = &self.state.u[stride * self.block..stride * (self.block + 1)];
-        apply::<L, C, 6>(&matrices.from_nodes, start, &mut self.scratch.points.start);
+        interleave::<6>(start, n, &mut self.scratch.nodes.stage);
+        apply::<L, C, 6>(&matrices.from_nodes, &self.scratch.nodes.stage[..6 * n], &mut self.scratch.points.start);
         if !self.scheme.sources.is_empty() {
             self.source_at_points(points, matrices.points());
         }
@@ -111,9 +116,9 @@ impl Block<'_> {
         let predictor = Predictor { law, matrices, metric, time, sweeps: *sweeps, dt: self.stage.dt };
         predictor.run::<L>(&mut self.scratch.points);
         self.scratch.phases.book(Phase::Predictor, clock);
-        let (np, mean) = (matrices.points(), &self.scratch.points.mean);
-        apply::<L, C, 5>(&matrices.to_nodes, mean, &mut self.scratch.nodes.mean);
-        apply::<L, C, 5>(&matrices.to_nodes, &mean[5 * np..], &mut self.scratch.nodes.mean[5 * n..]);
+        let (points, nodes) = (&self.scratch.points, &mut self.scratch.nodes);
+        apply::<L, C, 6>(&matrices.to_nodes, &points.mean, &mut nodes.mean);
+        apply::<L, C, 4>(&matrices.to_nodes, &points.mean_stress, &mut nodes.mean_stress);
         self.scratch.phases.book(Phase::PointsToGrid, clock);
     }
 
@@ -127,7 +132,7 @@ impl Block<'_> {
                 for (s, node) in self.stage.times.iter().enumerate() {
                     let b = self.acceleration(x, node.time, lane);
                     for (k, b) in b.into_iter().enumerate() {
-                        self.scratch.points.source[(2 * s + k) * np + p].0[lane] = b;
+                        self.scratch.points.source[2 * (s * np + p) + k].0[lane] = b;
                     }
                 }
             }

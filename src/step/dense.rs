@@ -1,24 +1,30 @@
 //! Products of operator matrices with fields of a block.
 
-use crate::lane::{Coefficient, F8, Lanes};
+use crate::lane::{Coefficient, F8, Lanes, store_array};
 use crate::operators::Matrix;
 
-/// out[k][r] = sum_c matrix[r][c] input[k][c] for K fields; a field of `input` has `matrix.columns` numbers, one of
-/// `out` has `matrix.rows`.
+/// out[r][k] = sum_c matrix[r][c] input[c][k] for K fields that lie behind each other at each point.
 #[inline(always)]
 pub fn apply<L: Lanes, C: Coefficient, const K: usize>(matrix: &Matrix<C>, input: &[F8], out: &mut [F8]) {
-    let (rows, columns) = (matrix.rows, matrix.columns);
-    let input = &input[..K * columns];
-    for r in 0..rows {
+    let (input, out) = (input.as_chunks::<K>().0, out.as_chunks_mut::<K>().0);
+    for (row, out) in matrix.data.chunks_exact(matrix.columns.max(1)).zip(out) {
         let mut sum = [L::zero(); K];
-        for (c, entry) in matrix.row(r).iter().enumerate() {
+        for (entry, values) in row.iter().zip(input) {
             let entry = entry.lanes::<L>();
-            for k in 0..K {
-                sum[k] = entry.mul_add(L::load(&input[k * columns + c]), sum[k]);
+            for (sum, value) in sum.iter_mut().zip(values) {
+                *sum = entry.mul_add(L::load(value), *sum);
             }
         }
-        for k in 0..K {
-            sum[k].store(&mut out[k * rows + r]);
+        store_array(sum, out);
+    }
+}
+
+/// From [field][node] as in the state to [node][field], for K fields.
+#[inline(always)]
+pub fn interleave<const K: usize>(fields: &[F8], nodes: usize, out: &mut [F8]) {
+    for (a, out) in out.as_chunks_mut::<K>().0.iter_mut().take(nodes).enumerate() {
+        for (k, out) in out.iter_mut().enumerate() {
+            *out = fields[k * nodes + a];
         }
     }
 }
@@ -40,12 +46,4 @@ pub fn gather<L: Lanes, const K: usize>(fields: &[F8], len: usize, i: usize) -> 
         out[k] = L::load(&fields[k * len + i]);
     }
     out
-}
-
-/// Writes the numbers of K fields of length `len` at index i.
-#[inline(always)]
-pub fn scatter<L: Lanes, const K: usize>(values: [L; K], fields: &mut [F8], len: usize, i: usize) {
-    for (k, value) in values.into_iter().enumerate() {
-        value.store(&mut fields[k * len + i]);
-    }
 }

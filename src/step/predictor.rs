@@ -1,28 +1,30 @@
 //! The local predictor (15)-(21): a space-time collocation at the points of each cell, blind to its neighbours.
 
-use super::dense::{add_scaled, apply, gather, scatter};
+use super::dense::apply;
 use crate::basis::TimeBasis;
-use crate::lane::{Coefficient, F8, Lanes, load_array};
+use crate::lane::{Coefficient, F8, Lanes, load_array, store_array};
 use crate::material::Material;
 use crate::operators::PointMatrices;
 
-/// Arrays of one block at its points; [field][point] each, those with a time node outermost.
+/// Arrays of one block at its points; [point][field] each, those of time nodes with the node outermost.
 #[derive(Default)]
 pub struct Arrays {
     /// U_p^n.
     pub start: Vec<F8>,
-    /// u_s,p, [s][6][p].
+    /// u_s,p, [s][p][6].
     u: Vec<F8>,
-    /// r_s,p, [s][6][p].
+    /// r_s,p, [s][p][6].
     rate: Vec<F8>,
-    /// Q = (P, v) of one time node, [6][p].
+    /// Q = (P, v) of one time node, [p][6].
     q: Vec<F8>,
     /// Its derivatives along xi1, xi2.
     slope: [Vec<F8>; 2],
-    /// Sources b at points and time nodes, [s][2][p]; empty without sources.
+    /// Sources b at points and time nodes, [s][p][2]; empty without sources.
     pub source: Vec<F8>,
-    /// Time averages, [F (4), v (2), P (4)][p].
+    /// Time averages of F and v, [p][6].
     pub mean: Vec<F8>,
+    /// Time averages of P, [p][4].
+    pub mean_stress: Vec<F8>,
 }
 
 impl Arrays {
@@ -36,7 +38,8 @@ impl Arrays {
             q: zeros(6),
             slope: [zeros(6), zeros(6)],
             source: if sources { zeros(2 * times) } else { vec![] },
-            mean: zeros(10),
+            mean: zeros(6),
+            mean_stress: zeros(4),
         }
     }
 }
@@ -86,16 +89,17 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
     fn rate<L: Lanes>(&self, u: &[F8], rate: &mut [F8], q: &mut [F8], slope: &mut [Vec<F8>; 2]) {
         let np = self.matrices.points();
         let inverse_density = L::splat(1.0 / self.law.density());
-        for p in 0..np {
-            let [f11, f12, f21, f22, p1, p2] = gather::<L, 6>(u, np, p);
+        for (u, q) in u.as_chunks::<6>().0.iter().zip(q.as_chunks_mut::<6>().0) {
+            let [f11, f12, f21, f22, p1, p2] = load_array::<L, 6>(u);
             let stress = self.law.stress([f11, f12, f21, f22], &mut []);
             let v = [p1 * inverse_density, p2 * inverse_density];
-            scatter([stress[0], stress[1], stress[2], stress[3], v[0], v[1]], q, np, p);
+            store_array([stress[0], stress[1], stress[2], stress[3], v[0], v[1]], q);
         }
         apply::<L, C, 6>(&self.matrices.slope[0], q, &mut slope[0]);
         apply::<L, C, 6>(&self.matrices.slope[1], q, &mut slope[1]);
         for p in 0..np {
-            let (a, b) = (gather::<L, 6>(&slope[0], np, p), gather::<L, 6>(&slope[1], np, p));
+            let at = 6 * p..6 * p + 6;
+            let (a, b) = (load_array::<L, 6>(&slope[0][at.clone()]), load_array::<L, 6>(&slope[1][at.clone()]));
             // D_a = sum_b dxi_b/dX_a d/dxi_b, from (xi1, xi2) slopes and the metric [b][a].
             let [m11, m12, m21, m22] = load_array::<L, 4>(&self.metric[4 * p..4 * p + 4]);
             let values = [
@@ -106,20 +110,17 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
                 a[0].mul_add(m11, b[0] * m21) + a[1].mul_add(m12, b[1] * m22),
                 a[2].mul_add(m11, b[2] * m21) + a[3].mul_add(m12, b[3] * m22),
             ];
-            scatter(values, rate, np, p);
+            store_array(values, &mut rate[at]);
         }
     }
 
     /// r_p += rho0 b at every time node.
     #[inline(always)]
     fn add_source<L: Lanes>(&self, rate: &mut [F8], source: &[F8]) {
-        let np = self.matrices.points();
-        if source.is_empty() {
-            return;
-        }
-        for s in 0..self.time.len() {
-            let momentum = &mut rate[s * 6 * np + 4 * np..(s + 1) * 6 * np];
-            add_scaled::<L>(self.law.density(), &source[s * 2 * np..(s + 1) * 2 * np], momentum);
+        let density = L::splat(self.law.density());
+        for (rate, source) in rate.as_chunks_mut::<6>().0.iter_mut().zip(source.as_chunks::<2>().0) {
+            density.mul_add(L::load(&source[0]), L::load(&rate[4])).store(&mut rate[4]);
+            density.mul_add(L::load(&source[1]), L::load(&rate[5])).store(&mut rate[5]);
         }
     }
 
@@ -127,14 +128,19 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
     #[inline(always)]
     fn integrate<L: Lanes>(&self, start: &[F8], rate: &[F8], u: &mut [F8]) {
         let (size, times) = (start.len(), self.time.len());
-        for s in 0..times {
-            let row = &self.time.integration[s * times..(s + 1) * times];
-            for i in 0..size {
-                let mut sum = L::load(&start[i]);
-                for (k, entry) in row.iter().enumerate() {
-                    sum = L::splat(self.dt * entry).mul_add(L::load(&rate[k * size + i]), sum);
+        for (s, u) in u.chunks_exact_mut(size).take(times).enumerate() {
+            for (k, rate) in rate.chunks_exact(size).take(times).enumerate() {
+                let factor = L::splat(self.dt * self.time.integration[s * times + k]);
+                // The first node starts from U^n, the others add to it.
+                if k == 0 {
+                    for (u, (start, rate)) in u.iter_mut().zip(start.iter().zip(rate)) {
+                        factor.mul_add(L::load(rate), L::load(start)).store(u);
+                    }
+                } else {
+                    for (u, rate) in u.iter_mut().zip(rate) {
+                        factor.mul_add(L::load(rate), L::load(u)).store(u);
+                    }
                 }
-                sum.store(&mut u[s * size + i]);
             }
         }
     }
@@ -145,20 +151,21 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         let np = self.matrices.points();
         let inverse_density = L::splat(1.0 / self.law.density());
         for p in 0..np {
-            let mut mean = [L::zero(); 10];
+            let (mut mean, mut mean_stress) = ([L::zero(); 6], [L::zero(); 4]);
             for (s, &weight) in self.time.weights.iter().enumerate() {
-                let [f11, f12, f21, f22, p1, p2] = gather::<L, 6>(&arrays.u[s * 6 * np..], np, p);
-                let f = [f11, f12, f21, f22];
-                let stress = self.law.stress(f, &mut []);
+                let [f11, f12, f21, f22, p1, p2] = load_array::<L, 6>(&arrays.u[6 * (s * np + p)..]);
+                let values = [f11, f12, f21, f22, p1 * inverse_density, p2 * inverse_density];
+                let stress = self.law.stress([f11, f12, f21, f22], &mut []);
                 let w = L::splat(weight);
-                for k in 0..4 {
-                    mean[k] = w.mul_add(f[k], mean[k]);
-                    mean[6 + k] = w.mul_add(stress[k], mean[6 + k]);
+                for k in 0..6 {
+                    mean[k] = w.mul_add(values[k], mean[k]);
                 }
-                mean[4] = w.mul_add(p1 * inverse_density, mean[4]);
-                mean[5] = w.mul_add(p2 * inverse_density, mean[5]);
+                for k in 0..4 {
+                    mean_stress[k] = w.mul_add(stress[k], mean_stress[k]);
+                }
             }
-            scatter(mean, &mut arrays.mean, np, p);
+            store_array(mean, &mut arrays.mean[6 * p..6 * p + 6]);
+            store_array(mean_stress, &mut arrays.mean_stress[4 * p..4 * p + 4]);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The health of a state: current wave speeds (for dt and LCF), min J, and where stability was lost.
 
 use super::{Phase, Scheme, Scratch, Work as Memory, dense, with_scratch};
-use crate::lane::{Coefficient, F8, Lanes, Work};
+use crate::lane::{Coefficient, F8, Lanes, Work, load_array};
 use crate::material::Material;
 use crate::operators::{Matrix, Share};
 use crate::state::State;
@@ -151,14 +151,16 @@ impl Work for Block<'_> {
         let stride = self.state.components * operators.nodes();
         let u = &self.state.u[stride * self.block..stride * (self.block + 1)];
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
-        let points = &mut self.scratch.points.start;
+        let (nodes, points) = (&mut self.scratch.nodes.stage, &mut self.scratch.points.start);
+        dense::interleave::<4>(u, operators.nodes(), nodes);
+        let nodes = &nodes[..4 * operators.nodes()];
         let count = match operators.points.as_ref().map(|p| (p, p.pool.share[self.block])) {
             None => operators.nodes(),
-            Some((p, Share::Shared(k))) => to_points::<L, _>(&p.pool.shared[k].from_nodes, u, points),
-            Some((p, Share::Own(k))) => to_points::<L, _>(&p.pool.own[k].from_nodes, u, points),
+            Some((p, Share::Shared(k))) => to_points::<L, _>(&p.pool.shared[k].from_nodes, nodes, points),
+            Some((p, Share::Own(k))) => to_points::<L, _>(&p.pool.own[k].from_nodes, nodes, points),
         };
-        let f = if operators.points.is_some() { &points[..] } else { u };
-        let found = with_law!(law, law => examine::<L, _>(law, f, count, u));
+        let f = if operators.points.is_some() { &points[..4 * count] } else { &nodes[..4 * count] };
+        let found = with_law!(law, law => examine::<L, _>(law, f, u));
         self.scratch.phases.book(Phase::Survey, &mut clock);
         found
     }
@@ -166,16 +168,16 @@ impl Work for Block<'_> {
 
 /// F at the points; the number of points.
 #[inline(always)]
-fn to_points<L: Lanes, C: Coefficient>(from_nodes: &Matrix<C>, u: &[F8], points: &mut [F8]) -> usize {
-    dense::apply::<L, C, 4>(from_nodes, u, points);
+fn to_points<L: Lanes, C: Coefficient>(from_nodes: &Matrix<C>, nodes: &[F8], points: &mut [F8]) -> usize {
+    dense::apply::<L, C, 4>(from_nodes, nodes, points);
     from_nodes.rows
 }
 
 #[inline(always)]
-fn examine<L: Lanes, M: Material>(law: &M, f: &[F8], count: usize, u: &[F8]) -> Found {
+fn examine<L: Lanes, M: Material>(law: &M, f: &[F8], u: &[F8]) -> Found {
     let (mut speed, mut min_j, mut poison) = (L::zero(), L::splat(f64::INFINITY), L::zero());
-    for p in 0..count {
-        let f = dense::gather::<L, 4>(f, count, p);
+    for f in f.as_chunks::<4>().0 {
+        let f = load_array::<L, 4>(f);
         let c = law.largest_speeds(f);
         speed = speed.max(c[0]);
         min_j = min_j.min(tensor::det(f));

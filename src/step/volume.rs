@@ -3,7 +3,6 @@
 //! F rows in strong form (D v; `finish` adds the lifted jump of v), exact on uniform states; p rows in weak form. Both
 //! are exact integrals on bilinear cells, so the two forms agree there to rounding.
 
-use super::dense::gather;
 use crate::lane::{F8, Lanes, load_array};
 use crate::material::Material;
 use crate::operators::{Geometry, Line};
@@ -15,8 +14,10 @@ use crate::tensor;
 pub struct Arrays {
     /// U of a Runge-Kutta stage, as in the state.
     pub stage: Vec<F8>,
-    /// Averages [F (4), v (2), P (4)][node].
+    /// Averages of F and v, [node][6].
     pub mean: Vec<F8>,
+    /// Averages of P, [node][4].
+    pub mean_stress: Vec<F8>,
     /// Contravariant tractions J dxi_b/dX_a P_ia, [b][i][node].
     contravariant: Vec<F8>,
     /// Sources b, averaged over time, [2][node].
@@ -36,7 +37,8 @@ impl Arrays {
         let n = m * m;
         Self {
             stage: zeros(components * n),
-            mean: zeros(10 * n),
+            mean: zeros(6 * n),
+            mean_stress: zeros(4 * n),
             contravariant: zeros(4 * n),
             source: zeros(2 * n),
             lift: zeros(4 * 6 * m),
@@ -80,7 +82,7 @@ pub fn volume<L: Lanes>(line: &Line, metric: Metric, arrays: &mut Arrays, rate: 
     let (m, n) = (line.m, line.m * line.m);
     for a in 0..n {
         let c = load_array::<L, 4>(&metric.cofactor[4 * a..4 * a + 4]);
-        let p = gather::<L, 4>(&arrays.mean[6 * n..], n, a);
+        let p = load_array::<L, 4>(&arrays.mean_stress[4 * a..4 * a + 4]);
         for b in 0..2 {
             for i in 0..2 {
                 let t = c[2 * b].mul_add(p[2 * i], c[2 * b + 1] * p[2 * i + 1]);
@@ -101,9 +103,8 @@ pub fn volume<L: Lanes>(line: &Line, metric: Metric, arrays: &mut Arrays, rate: 
                 let d = [L::splat(line.slope[i * m + k]), L::splat(line.slope[j * m + k])];
                 let w = [L::splat(line.weak[i * m + k]), L::splat(line.weak[j * m + k])];
                 for r in 0..2 {
-                    let v = &arrays.mean[(4 + r) * n..(5 + r) * n];
-                    slope[r][0] = d[0].mul_add(L::load(&v[along1]), slope[r][0]);
-                    slope[r][1] = d[1].mul_add(L::load(&v[along2]), slope[r][1]);
+                    slope[r][0] = d[0].mul_add(L::load(&arrays.mean[6 * along1 + 4 + r]), slope[r][0]);
+                    slope[r][1] = d[1].mul_add(L::load(&arrays.mean[6 * along2 + 4 + r]), slope[r][1]);
                     weak[r] = w[0].mul_add(L::load(&arrays.contravariant[r * n + along1]), weak[r]);
                     weak[r] = w[1].mul_add(L::load(&arrays.contravariant[(2 + r) * n + along2]), weak[r]);
                 }
@@ -122,22 +123,25 @@ pub fn volume<L: Lanes>(line: &Line, metric: Metric, arrays: &mut Arrays, rate: 
 
 /// Traces of all faces from the averages at the nodes; the speeds are those of the averaged F.
 #[inline(always)]
-pub fn traces<L: Lanes, M: Material>(law: &M, line: &Line, metric: Metric, mean: &[F8], traces: &mut [F8]) {
-    let (m, n) = (line.m, line.m * line.m);
+pub fn traces<L: Lanes, M: Material>(law: &M, line: &Line, metric: Metric, arrays: &Arrays, traces: &mut [F8]) {
+    let m = line.m;
     for face in 0..4 {
         let ends = &line.ends[face % 2];
         let normal = load_array::<L, 2>(&metric.normal[2 * face..2 * face + 2]);
         for point in 0..m {
-            let mut sum = [L::zero(); 10];
+            let (mut sum, mut stress) = ([L::zero(); 6], [L::zero(); 4]);
             for (k, &end) in ends.iter().enumerate() {
                 let a = if face < 2 { k * m + point } else { point * m + k };
                 let end = L::splat(end);
-                for (field, sum) in sum.iter_mut().enumerate() {
-                    *sum = end.mul_add(L::load(&mean[field * n + a]), *sum);
+                for (sum, value) in sum.iter_mut().zip(&arrays.mean[6 * a..6 * a + 6]) {
+                    *sum = end.mul_add(L::load(value), *sum);
+                }
+                for (sum, value) in stress.iter_mut().zip(&arrays.mean_stress[4 * a..4 * a + 4]) {
+                    *sum = end.mul_add(L::load(value), *sum);
                 }
             }
             let f = [sum[0], sum[1], sum[2], sum[3]];
-            let t = tensor::times([sum[6], sum[7], sum[8], sum[9]], normal);
+            let t = tensor::times(stress, normal);
             let c = law.speeds(f, normal);
             let values = [f[0], f[1], f[2], f[3], sum[4], sum[5], t[0], t[1], c[0], c[1]];
             let out = &mut traces[(face * m + point) * TRACE..(face * m + point + 1) * TRACE];
