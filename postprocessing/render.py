@@ -48,7 +48,9 @@ def default_component(name, components):
     return {9: "11", 3: "norm", 1: ""}[components]
 
 
-def draw(run, field="cauchy_stress", component=None, time=None, warp=1.0, points=False, edges=False, dpi=160, out="render.png"):
+def draw(
+    run, field="cauchy_stress", component=None, time=None, warp=1.0, points=False, edges=False, dpi=160, out="view.png"
+):
     """Draws one step of a run into a PNG (or what the name of the file says)."""
     t, path = exported.step_at(run, time)
     grid = exported.read_grid(path)
@@ -96,7 +98,7 @@ def main():
     parser.add_argument("--points", action="store_true", help="draw the material points")
     parser.add_argument("--edges", action="store_true", help="draw the edges of the cells")
     parser.add_argument("--dpi", type=int, default=160)
-    parser.add_argument("--out", default="render.png")
+    parser.add_argument("--out", default="view.png")
     args = parser.parse_args()
     draw(**vars(args))
     print(args.out)

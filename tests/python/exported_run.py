@@ -121,7 +121,7 @@ def error(values, expected, floor=1e-300):
 def check_values(name, data, expected, limit):
     """Fields of a file against numpy's."""
     check(f"{name}: its fields are {', '.join(expected)}", set(data) == set(expected))
-    worst = max(((error(data[key], values, FLOOR.get(key, 1e-300)), key) for key, values in expected.items()), default=(0.0, "-"))
+    worst = max((error(data[key], values, FLOOR.get(key, 1e-300)), key) for key, values in expected.items())
     check(f"{name}: all fields as numpy has them (largest difference {worst[0]:.1e}, {worst[1]})", worst[0] < limit)
 
 
