@@ -8,7 +8,7 @@ pub const UNKNOWNS: usize = 6;
 
 /// The grid unknowns at the Gauss nodes, the master copy between steps.
 ///
-/// Layout: [block][component][node], node a = i M + j with i along xi1. Components are the six of U and, where an
+/// Layout: `[block][component][node]`, node a = i M + j with i along xi1. Components are the six of U and, where an
 /// output asks for it, the displacement u1, u2 (m), which no flux touches: du/dt = v.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
@@ -23,13 +23,13 @@ pub struct State {
 }
 
 impl State {
-    /// From numbers per cell, [cell][component][node]; padding lanes rest at F = 1, p = 0.
+    /// From numbers per cell, `[cell][component][node]`; padding lanes rest at F = 1, p = 0.
     pub fn pack(blocks: &Blocks, nodes: usize, components: usize, cells: &[f64]) -> Self {
         let rest = |k: usize| if k / nodes == 0 || k / nodes == 3 { 1.0 } else { 0.0 };
         Self { time: 0.0, step: 0, components, u: blocks.pack(cells, components * nodes, rest) }
     }
 
-    /// Numbers per cell, [cell][component][node].
+    /// Numbers per cell, `[cell][component][node]`.
     pub fn unpack(&self, blocks: &Blocks, nodes: usize) -> Vec<f64> {
         blocks.unpack(&self.u, self.components * nodes)
     }

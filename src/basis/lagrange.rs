@@ -43,7 +43,7 @@ impl Lagrange {
         (0..n.len()).map(|k| others(k).map(|i| without(k, i) / (n[k] - n[i])).sum()).collect()
     }
 
-    /// D[i][k] = l_k'(x_i), row by row.
+    /// `D[i][k]` = l_k'(x_i), row by row.
     pub fn derivative_matrix(&self) -> Vec<f64> {
         self.nodes.iter().flat_map(|&x| self.derivatives(x)).collect()
     }

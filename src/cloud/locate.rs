@@ -170,8 +170,15 @@ fn build(entries: &mut [Entry], nodes: &mut Vec<Node>) {
     }
 }
 
+/// A parent coordinate to 2^-40 (1e-12 of the cell): cells whose points agree up to the rounding of positions then have
+/// the same points to the bit, and share matrices.
+fn on_lattice(xi: f64) -> f64 {
+    const STEPS: f64 = (1_u64 << 40) as f64;
+    (xi * STEPS).round() / STEPS
+}
+
 /// The cloud of points given by their positions X, in m, and for each point of the cloud its index in `points`.
-/// Points of a cell keep their order.
+/// Points of a cell keep their order; parent coordinates are exact to 2^-41 (5e-13).
 pub fn from_points(mesh: &Mesh, locator: &Locator, points: &[[f64; 2]]) -> Result<(Cloud, Vec<usize>), Outside> {
     let found: Vec<_> = points.par_iter().map(|&x| locator.find(x)).collect();
     if let Some(first) = found.iter().position(Option::is_none) {
@@ -187,7 +194,7 @@ pub fn from_points(mesh: &Mesh, locator: &Locator, points: &[[f64; 2]]) -> Resul
     for cell in 0..mesh.cells.len() {
         first[cell + 1] += first[cell];
     }
-    let cloud = Cloud { first, xi: located.iter().map(|&(_, _, xi)| xi).collect() };
+    let cloud = Cloud { first, xi: located.iter().map(|&(_, _, xi)| xi.map(on_lattice)).collect() };
     Ok((cloud, located.iter().map(|&(_, index, _)| index).collect()))
 }
 
@@ -292,8 +299,8 @@ mod tests {
             let mut xi = found.of(cell).to_vec();
             xi.reverse();
             for (a, b) in xi.iter().flatten().zip(cloud.of(cell).iter().flatten()) {
-                // Newton ends at rounding, amplified by 1 / det of these cells, above 0.1.
-                assert!((a - b).abs() < 1e-14);
+                // Half a step of 2^-40, and Newton's rounding amplified by 1 / det of these cells, above 0.1.
+                assert!((a - b).abs() < 0.5 * 2f64.powi(-40) + 1e-14);
             }
         }
         let last = points.len() - 1;

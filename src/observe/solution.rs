@@ -28,7 +28,7 @@ pub struct Solution<'a> {
     pub material: &'a [usize],
     /// 6, or 8 with displacement.
     pub components: usize,
-    /// [cell][component][node].
+    /// `[cell][component][node]`.
     pub u: Vec<f64>,
 }
 

@@ -106,7 +106,7 @@ impl Blocks {
         })
     }
 
-    /// Numbers per cell, [cell][stride], to blocks, [block][stride]; padding lanes get `padding(k)`.
+    /// Numbers per cell, `[cell][stride]`, to blocks, `[block][stride]`; padding lanes get `padding(k)`.
     pub fn pack(&self, values: &[f64], stride: usize, padding: impl Fn(usize) -> f64) -> Vec<F8> {
         let mut out = Vec::with_capacity(self.len() * stride);
         for (cells, &count) in self.cells.iter().zip(&self.count) {

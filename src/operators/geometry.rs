@@ -7,19 +7,19 @@ use crate::mesh::{FACE_CORNERS, Mesh, map};
 /// Metric terms. J_a is the determinant of dX/dxi at node a (an area, m^2; not the jacobian of F).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
-    /// J dxi_b / dX_a at the nodes, m: [block][node][b][a].
+    /// J dxi_b / dX_a at the nodes, m: `[block][node][b][a]`.
     pub cofactor: Vec<F8>,
-    /// The diagonal, exact mass matrix w_a J_a, m^2: [block][node].
+    /// The diagonal, exact mass matrix w_a J_a, m^2: `[block][node]`.
     pub mass: Vec<F8>,
-    /// Its inverse, m^-2: [block][node].
+    /// Its inverse, m^-2: `[block][node]`.
     pub inverse_mass: Vec<F8>,
-    /// Unit outward normals: [block][face][2].
+    /// Unit outward normals: `[block][face][2]`.
     pub normal: Vec<F8>,
-    /// Lengths of the faces, m: [block][face].
+    /// Lengths of the faces, m: `[block][face]`.
     pub length: Vec<F8>,
-    /// Corners X, m: [block][corner][2].
+    /// Corners X, m: `[block][corner][2]`.
     pub corners: Vec<F8>,
-    /// h_e, m: [block].
+    /// h_e, m: `[block]`.
     pub h: Vec<F8>,
 }
 
@@ -73,7 +73,7 @@ impl Geometry {
     }
 }
 
-/// J dxi_b/dX_a as [b][a], from dX_a/dxi_b as [a][b].
+/// J dxi_b/dX_a as `[b][a]`, from dX_a/dxi_b as `[a][b]`.
 pub fn cofactor(j: [[f64; 2]; 2]) -> [f64; 4] {
     [j[1][1], -j[0][1], -j[1][0], j[0][0]]
 }

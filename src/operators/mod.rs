@@ -88,9 +88,9 @@ pub struct Line {
     pub basis: Lagrange,
     /// M = N + 1.
     pub m: usize,
-    /// D[i][k] = l_k'(x_i).
+    /// `D[i][k]` = l_k'(x_i).
     pub slope: Vec<f64>,
-    /// Weak derivative: w_k l_i'(x_k) / w_i at [i][k].
+    /// Weak derivative: w_k l_i'(x_k) / w_i at `[i][k]`.
     pub weak: Vec<f64>,
     /// l_k(0) and l_k(1).
     pub ends: [Vec<f64>; 2],

@@ -66,9 +66,9 @@ pub struct Points {
     pub pool: PointPool,
     /// First entry of each block in `metric`, in points (length: blocks + 1).
     pub first: Vec<usize>,
-    /// dxi_b/dX_a at the points, 1/m: [point of block][b][a].
+    /// dxi_b/dX_a at the points, 1/m: `[point of block][b][a]`.
     pub metric: Vec<F8>,
-    /// Parent coordinates of the points: [point of block][2].
+    /// Parent coordinates of the points: `[point of block][2]`.
     pub parent: Vec<F8>,
 }
 

@@ -8,7 +8,7 @@ use crate::tensor;
 #[derive(Debug, Clone, Copy)]
 pub struct Acoustic;
 
-/// [`Acoustic`] with -c_p/2 ([F] T) (x) T added to Flux*_F, which damps the jumps that are no gradients.
+/// [`Acoustic`] with -c_p/2 (`[F]` T) (x) T added to Flux*_F, which damps the jumps that are no gradients.
 #[derive(Debug, Clone, Copy)]
 pub struct AcousticCurl;
 

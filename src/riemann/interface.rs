@@ -4,7 +4,7 @@ use super::acoustic::curl_penalty;
 use super::{Impedance, Trace, add_tangential, current_normal, star};
 use crate::lane::Lane;
 
-/// v* = (Z^- + Z^+)^-1 (Z^- v^- + Z^+ v^+ + t^+ - t^-), t* = t^- + Z^- (v* - v^-), and -c/2 ([F] T) (x) T.
+/// v* = (Z^- + Z^+)^-1 (Z^- v^- + Z^+ v^+ + t^+ - t^-), t* = t^- + Z^- (v* - v^-), and -c/2 (`[F]` T) (x) T.
 ///
 /// Z^-, Z^+ from each side's own speeds and density (kg/m^3). Both share the current normal n, so that
 /// Z^- + Z^+ is again an impedance. Never Rusanov there: two densities in uniform motion would give a false stress.

@@ -13,7 +13,7 @@ use std::time::Instant;
 /// What a state tells before it is stepped.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Survey {
-    /// Largest current speed over the points (nodes for RK) of each cell, m/s: [block].
+    /// Largest current speed over the points (nodes for RK) of each cell, m/s: `[block]`.
     pub speed: Vec<F8>,
     /// The largest of all, m/s.
     pub fastest: f64,
