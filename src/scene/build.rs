@@ -9,7 +9,7 @@ use crate::error::{Error, Place, Result};
 use crate::io::{cloud_file, gmsh, mesh_file, store};
 use crate::lane::Kernel;
 use crate::material::Law;
-use crate::mesh::{self, Mesh};
+use crate::mesh::{self, Link, Mesh};
 use crate::observe::{Field, Ledger, Line, Observer, Outside, Samples, Schedule, Snapshots};
 use crate::operators::{Needs, Operators, Sampling};
 use crate::run::{Folder, Settings};
@@ -54,6 +54,29 @@ impl Scene {
         };
         self.check_groups(&mesh.groups, &mesh.edge_groups)?;
         Ok(mesh)
+    }
+
+    /// Pairs of boundary groups (by number) that are periodic to each other, each once.
+    pub fn periodic_groups(&self, mesh: &Mesh) -> Vec<[usize; 2]> {
+        let number = |name: &String| mesh.edge_groups.iter().position(|group| group == name);
+        let mut pairs: Vec<[usize; 2]> = Vec::new();
+        for boundary in &self.boundaries {
+            let Condition::Periodic { partner } = &boundary.condition else { continue };
+            // `check_groups` has refused groups that the mesh lacks.
+            let (Some(a), Some(b)) = (number(&boundary.group), number(partner)) else { continue };
+            if !pairs.contains(&[b, a]) {
+                pairs.push([a, b]);
+            }
+        }
+        pairs
+    }
+
+    /// What lies behind the faces of each cell: the mesh's neighbours, and those across periodic boundaries.
+    ///
+    /// # Errors
+    /// A mesh whose faces or periodic groups do not fit together.
+    pub fn links(&self, mesh: &Mesh) -> Result<Vec<[Link; 4]>> {
+        Ok(mesh::periodic_links(mesh, &self.periodic_groups(mesh))?)
     }
 
     /// The number of the `[[material]]` of each cell.
@@ -117,7 +140,7 @@ impl Scene {
     /// The scheme.
     pub fn build_scheme(&self, mesh: &Mesh, operators: Operators, kernel: Kernel) -> Scheme {
         let condition = |group: &String| self.boundaries.iter().find(|b| b.group == *group).map(condition);
-        // `check_groups` has refused groups without a condition.
+        // `check_groups` has refused groups without a condition; no face looks at that of a periodic group.
         let free = || Box::new(boundary::Free) as Box<dyn boundary::Boundary>;
         let boundaries = mesh.edge_groups.iter().map(|group| condition(group).unwrap_or_else(free)).collect();
         let curl_rate = match self.curl {
@@ -279,7 +302,8 @@ fn schedule(output: &Output) -> Schedule {
 fn condition(boundary: &Boundary) -> Box<dyn boundary::Boundary> {
     let zero = || data(&Expression::number(0.0));
     match &boundary.condition {
-        Condition::Free => Box::new(boundary::Free),
+        // The faces of a periodic group are inner faces: nothing asks for its condition.
+        Condition::Free | Condition::Periodic { .. } => Box::new(boundary::Free),
         Condition::Symmetry => Box::new(boundary::Wall { speed: None }),
         Condition::Wall { speed } if speed.constant() == Some(0.0) => Box::new(boundary::Wall { speed: None }),
         Condition::Wall { speed } => Box::new(boundary::Wall { speed: Some(data(speed)) }),

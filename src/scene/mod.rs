@@ -159,6 +159,11 @@ pub enum Condition {
     Traction([Expression; 2]),
     /// Nothing comes in.
     Absorbing,
+    /// The body goes on at another group, which a translation takes this one to.
+    Periodic {
+        /// The other group; it needs no entry of its own.
+        partner: String,
+    },
 }
 
 /// A force on the volume.
