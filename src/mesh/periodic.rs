@@ -112,7 +112,7 @@ impl<'a> Partners<'a> {
         for key in (-1..=1).flat_map(|di| (-1..=1).map(move |dj| [i + di, j + dj])) {
             let Some(bucket) = self.buckets.get_mut(&key) else { continue };
             let fits = |edge: &&Edge| near(edge.ends, ends) || near([edge.ends[1], edge.ends[0]], ends);
-            if let Some(k) = bucket.iter().position(|edge| fits(edge)) {
+            if let Some(k) = bucket.iter().position(fits) {
                 let edge = bucket.swap_remove(k);
                 return Some((edge, !near(edge.ends, ends)));
             }

@@ -6,6 +6,7 @@ use super::{
 use crate::boundary::{self, Data};
 use crate::cloud::{self, Cloud, seed};
 use crate::error::{Error, Place, Result};
+use crate::exact::ExactForce;
 use crate::io::{cloud_file, gmsh, mesh_file, store};
 use crate::lane::Kernel;
 use crate::material::Law;
@@ -147,7 +148,11 @@ impl Scene {
             Curl::Lcf { alpha } if self.scheme.degree > 0 => Some(alpha * self.scheme.degree as f64),
             _ => None,
         };
-        let sources = self.sources.iter().map(|s| self.source(s)).collect();
+        let mut sources: Vec<_> = self.sources.iter().map(|s| self.source(s)).collect();
+        // A solution has a body force everywhere and always, or nowhere.
+        if let Some(exact) = self.build_exact().filter(|exact| exact.body_force([0.0; 2], 0.0).is_some()) {
+            sources.push(Box::new(ExactForce(exact)));
+        }
         Scheme {
             operators,
             laws: self.build_laws(),
@@ -165,7 +170,7 @@ impl Scene {
         Box::new(BodyForce { value: pair(&source.value), material: self.materials.iter().position(named) })
     }
 
-    /// The initial state: F and p at the grid nodes from the scene's expressions.
+    /// The initial state: F and p at the grid nodes from the scene's expressions, or from its exact solution.
     ///
     /// # Errors
     /// A value that is not finite, or J <= 0, with its place in the mesh.
@@ -174,12 +179,15 @@ impl Scene {
         let components = if self.wants_displacement() { UNKNOWNS + 2 } else { UNKNOWNS };
         let mut cells = vec![0.0; mesh.cells.len() * components * n];
         let material = self.material_of_cells(mesh);
+        let exact = self.exact.as_ref().filter(|exact| exact.initial).and_then(|_| self.build_exact());
         for (cell, values) in cells.chunks_mut(components * n).enumerate() {
             let density = scheme.laws[material[cell]].density();
             for a in 0..n {
                 let x = mesh::map::position(&mesh.corners(cell), basis.node_2d(a));
-                let f = self.initial.deformation.each_ref().map(|e| e.eval(x, 0.0));
-                let v = self.initial.velocity.each_ref().map(|e| e.eval(x, 0.0));
+                let (f, v) = match &exact {
+                    Some(exact) => (exact.deformation(x, 0.0), exact.velocity(x, 0.0)),
+                    None => self.initial.at(x),
+                };
                 self.check_initial(f, v, x, mesh.number(cell))?;
                 let u = [f[0], f[1], f[2], f[3], density * v[0], density * v[1]];
                 u.into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
@@ -280,6 +288,14 @@ impl Scene {
         let asked = self.outputs.iter().find(|output| output.what == What::Fields).map(|output| output.fields.clone());
         let all = || Field::NAMES.iter().map(|(_, field)| *field).filter(|f| *f != Field::Displacement).collect();
         asked.unwrap_or_else(all)
+    }
+}
+
+impl scene::Initial {
+    /// F and v at X.
+    fn at(&self, x: [f64; 2]) -> ([f64; 4], [f64; 2]) {
+        let value = |e: &Expression| e.eval(x, 0.0);
+        (self.deformation.each_ref().map(value), self.velocity.each_ref().map(value))
     }
 }
 

@@ -15,12 +15,13 @@ use crate::error::Result;
 /// Reads a whole scene.
 pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> {
     let mut root = Reader::new(document.as_table(), Vec::new(), &origin, "the scene".to_owned());
-    root.later(&["limiter", "regrid", "exact", "checkpoint"]);
+    root.later(&["limiter", "regrid", "checkpoint"]);
     let title = root.text("title")?;
     let mut mesh_table = root.table("mesh")?;
     let mut cloud_table = root.table("cloud")?;
     let mut material_tables = root.tables("material")?;
     let mut initial_table = root.table("initial")?;
+    let mut exact_table = root.table("exact")?;
     let boundary_tables = root.tables("boundary")?;
     let source_tables = root.tables("source")?;
     let mut curl_table = root.table("curl")?;
@@ -44,6 +45,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         cloud,
         materials,
         initial: initial(initial_table.as_mut())?,
+        exact: super::exact::exact(exact_table.as_mut(), initial_table.is_none())?,
         boundaries: boundaries(boundary_tables)?,
         sources: source_tables.into_iter().map(source).collect::<Result<_>>()?,
         curl: curl(curl_table.as_mut(), scheme.degree)?,

@@ -256,3 +256,24 @@ fn partners_that_do_not_agree_are_refused() {
         assert!(error.contains(part), "{error}");
     }
 }
+
+#[test]
+fn exact_solutions_have_defaults_and_fit_law_and_end() {
+    let scene = parse(MINIMAL, &["exact.kind=simple-wave", "exact.width=0.2", "time.end=1e-4"]).unwrap();
+    let exact = scene.exact.as_ref().unwrap();
+    assert_eq!((exact.parameters["amplitude"], exact.parameters["width"], exact.initial), (0.1, 0.2, true));
+    assert!(scene.build_exact().unwrap().body_force([0.0; 2], 0.0).is_none());
+    let given = parse(MINIMAL, &["exact.kind=wall-impact", "initial.velocity=[-200, 0]"]).unwrap();
+    assert!(!given.exact.unwrap().initial);
+    assert!(parse(MINIMAL, &["exact.kind=linear-bar", "material.0.law=linear-elastic"]).is_ok());
+    for (sets, part) in [
+        (&["exact.kind=simple-wave"][..], "then it breaks"),
+        (&["exact.kind=linear-bar"], "linear-elastic"),
+        (&["exact.kind=simple-wav"], "did you mean `simple-wave`"),
+        (&["exact.kind=wall-impact", "exact.width=1"], "unknown key `width`"),
+        (&["exact.speed=1"], "needs the key `kind`"),
+    ] {
+        let error = message(MINIMAL, sets);
+        assert!(error.contains(part), "{error}");
+    }
+}
