@@ -64,6 +64,7 @@ pub mod step;
 pub mod io;
 pub mod observe;
 pub mod run;
+pub mod exact;
 pub mod scene;
 pub mod cli;
 

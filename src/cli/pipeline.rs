@@ -4,7 +4,7 @@ use crate::cloud::Cloud;
 use crate::error::Result;
 use crate::io::{cloud_file, mesh_file, operators_file};
 use crate::lane::Kernel;
-use crate::mesh::{Mesh, links, map};
+use crate::mesh::{Mesh, map};
 use crate::operators::{Blocks, Line, Operators, Stored};
 use crate::run::Folder;
 use crate::scene::{Scene, build};
@@ -67,9 +67,9 @@ pub struct Store<'a> {
 /// A cell whose points cannot carry the degree; a file that cannot be written.
 pub fn operators(scene: &Scene, body: &Body, store: &Store) -> Result<(Operators, String)> {
     let needs = scene.needs(&body.cloud);
-    let links = links(&body.mesh)?;
+    let links = scene.links(&body.mesh)?;
     let (line, blocks) = (Line::new(needs.degree), Blocks::new(&body.material, &links));
-    let key = operators_file::key(&body.mesh, &body.material, &needs);
+    let key = operators_file::key(&body.mesh, &scene.periodic_groups(&body.mesh), &body.material, &needs);
     let mut notes = Vec::new();
     for path in store.look.iter().filter(|path| path.exists()) {
         // A damaged file is built again: it only holds what follows from the input.

@@ -3,7 +3,8 @@
 use super::pipeline::{self, Body, Files, Store};
 use super::print::{say, warn};
 use super::progress::Progress;
-use super::{RunArgs, SceneArgs, preprocess, summary};
+use super::summary::Outcome;
+use super::{RunArgs, SceneArgs, preprocess};
 use crate::error::{Error, Place, Result};
 use crate::observe;
 use crate::run::{Folder, Report, Run, Settings, Stop};
@@ -92,8 +93,9 @@ impl Solve<'_> {
             Ok(()) => ("done", Ok(())),
             Err(stop) => self.stopped(stop, &state),
         };
-        summary::print(self.scheme, &report);
-        let written = summary::write(self.scene, self.body, self.scheme, &state, &report, self.folder, status);
+        let outcome = Outcome::new(self.scene, self.body, self.scheme, &state, &report);
+        outcome.print();
+        let written = outcome.write(self.folder, status);
         say(format!("results in {}", self.folder.root.display()));
         result.and(written)
     }

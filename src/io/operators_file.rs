@@ -15,10 +15,12 @@ use crate::operators::{Blocks, Needs, Sampling, Stored};
 pub const FORMAT: Format =
     Format { name: "dgmpm operators", version: 1, remedy: "write it again by `dgmpm preprocess`" };
 
-/// The key: a hash of mesh, cloud (or nodes), degree, the law of each cell, and which matrices are asked for.
-pub fn key(mesh: &Mesh, material: &[usize], needs: &Needs) -> String {
+/// The key: a hash of mesh, pairs of periodic groups, cloud (or nodes), degree, the law of each cell, and which
+/// matrices are asked for.
+pub fn key(mesh: &Mesh, periodic: &[[usize; 2]], material: &[usize], needs: &Needs) -> String {
     let mut digest = Digest::new();
     digest.text(FORMAT.name).count(FORMAT.version as usize).text(&hash::of_mesh(mesh)).count(needs.degree);
+    digest.counts(periodic.as_flattened().iter().map(|&group| group as u64));
     digest.counts(material.iter().map(|&m| m as u64));
     match needs.sampling {
         None => digest.text("none"),

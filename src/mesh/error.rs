@@ -98,6 +98,26 @@ pub enum Error {
         /// The names of both groups.
         groups: [String; 2],
     },
+    /// Two periodic groups that cannot be joined edge by edge.
+    #[error("the periodic groups `{}` and `{}` have {} and {} boundary edges", .groups[0], .groups[1], .counts[0], .counts[1])]
+    PeriodicCount {
+        /// The names of both groups.
+        groups: [String; 2],
+        /// How many edges each has.
+        counts: [usize; 2],
+    },
+    /// An edge of a periodic group that has no match in the other.
+    #[error("the edge {} of cell {cell} in the periodic group `{}` has no match in `{}`: there is no edge {}", points(.at), .groups[0], .groups[1], points(.moved))]
+    PeriodicMismatch {
+        /// The ends of the edge.
+        at: [[f64; 2]; 2],
+        /// Number of its cell.
+        cell: u64,
+        /// Where the translation between the groups takes it.
+        moved: [[f64; 2]; 2],
+        /// The names of both groups.
+        groups: [String; 2],
+    },
 }
 
 impl Error {
@@ -125,6 +145,9 @@ impl Error {
                 "merge them (in Gmsh `Coherence Mesh;`, or `Geometry.AutoCoherence = 1;` before meshing); where a gap of width 0 is meant, put the edges of both sides into groups"
             }
             Error::TwoGroups { .. } => "keep each curve in one `Physical Curve` only",
+            Error::PeriodicCount { .. } | Error::PeriodicMismatch { .. } => {
+                "a translation must take one group to the other: give both the same shape and divisions (in Gmsh `Periodic Curve` and equal `Transfinite Curve`)"
+            }
         };
         text.to_owned()
     }

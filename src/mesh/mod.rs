@@ -4,11 +4,13 @@ pub mod check;
 mod error;
 pub mod faces;
 pub mod map;
+pub mod periodic;
 pub mod quality;
 pub mod structured;
 
 pub use error::Error;
 pub use faces::links;
+pub use periodic::periodic_links;
 pub use structured::rectangle;
 
 /// A mesh of bilinear quadrilaterals in the initial configuration, in metres.

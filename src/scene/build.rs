@@ -6,10 +6,11 @@ use super::{
 use crate::boundary::{self, Data};
 use crate::cloud::{self, Cloud, seed};
 use crate::error::{Error, Place, Result};
+use crate::exact::ExactForce;
 use crate::io::{cloud_file, gmsh, mesh_file, points, store};
 use crate::lane::Kernel;
 use crate::material::Law;
-use crate::mesh::{self, Mesh};
+use crate::mesh::{self, Link, Mesh};
 use crate::observe::{Field, Ledger, Line, Observer, Outside, Samples, Schedule, Snapshots};
 use crate::operators::{Needs, Operators, Sampling};
 use crate::run::{Folder, Settings};
@@ -54,6 +55,29 @@ impl Scene {
         };
         self.check_groups(&mesh.groups, &mesh.edge_groups)?;
         Ok(mesh)
+    }
+
+    /// Pairs of boundary groups (by number) that are periodic to each other, each once.
+    pub fn periodic_groups(&self, mesh: &Mesh) -> Vec<[usize; 2]> {
+        let number = |name: &String| mesh.edge_groups.iter().position(|group| group == name);
+        let mut pairs: Vec<[usize; 2]> = Vec::new();
+        for boundary in &self.boundaries {
+            let Condition::Periodic { partner } = &boundary.condition else { continue };
+            // `check_groups` has refused groups that the mesh lacks.
+            let (Some(a), Some(b)) = (number(&boundary.group), number(partner)) else { continue };
+            if !pairs.contains(&[b, a]) {
+                pairs.push([a, b]);
+            }
+        }
+        pairs
+    }
+
+    /// What lies behind the faces of each cell: the mesh's neighbours, and those across periodic boundaries.
+    ///
+    /// # Errors
+    /// A mesh whose faces or periodic groups do not fit together.
+    pub fn links(&self, mesh: &Mesh) -> Result<Vec<[Link; 4]>> {
+        Ok(mesh::periodic_links(mesh, &self.periodic_groups(mesh))?)
     }
 
     /// The number of the `[[material]]` of each cell.
@@ -117,14 +141,18 @@ impl Scene {
     /// The scheme.
     pub fn build_scheme(&self, mesh: &Mesh, operators: Operators, kernel: Kernel) -> Scheme {
         let condition = |group: &String| self.boundaries.iter().find(|b| b.group == *group).map(condition);
-        // `check_groups` has refused groups without a condition.
+        // `check_groups` has refused groups without a condition; no face looks at that of a periodic group.
         let free = || Box::new(boundary::Free) as Box<dyn boundary::Boundary>;
         let boundaries = mesh.edge_groups.iter().map(|group| condition(group).unwrap_or_else(free)).collect();
         let curl_rate = match self.curl {
             Curl::Lcf { alpha } if self.scheme.degree > 0 => Some(alpha * self.scheme.degree as f64),
             _ => None,
         };
-        let sources = self.sources.iter().map(|s| self.source(s)).collect();
+        let mut sources: Vec<_> = self.sources.iter().map(|s| self.source(s)).collect();
+        // A solution has a body force everywhere and always, or nowhere.
+        if let Some(exact) = self.build_exact().filter(|exact| exact.body_force([0.0; 2], 0.0).is_some()) {
+            sources.push(Box::new(ExactForce(exact)));
+        }
         Scheme {
             operators,
             laws: self.build_laws(),
@@ -142,7 +170,7 @@ impl Scene {
         Box::new(BodyForce { value: pair(&source.value), material: self.materials.iter().position(named) })
     }
 
-    /// The initial state: F and p at the grid nodes from the scene's expressions.
+    /// The initial state: F and p at the grid nodes from the scene's expressions, or from its exact solution.
     ///
     /// # Errors
     /// A value that is not finite, or J <= 0, with its place in the mesh.
@@ -151,12 +179,15 @@ impl Scene {
         let components = if self.wants_displacement() { UNKNOWNS + 2 } else { UNKNOWNS };
         let mut cells = vec![0.0; mesh.cells.len() * components * n];
         let material = self.material_of_cells(mesh);
+        let exact = self.exact.as_ref().filter(|exact| exact.initial).and_then(|_| self.build_exact());
         for (cell, values) in cells.chunks_mut(components * n).enumerate() {
             let density = scheme.laws[material[cell]].density();
             for a in 0..n {
                 let x = mesh::map::position(&mesh.corners(cell), basis.node_2d(a));
-                let f = self.initial.deformation.each_ref().map(|e| e.eval(x, 0.0));
-                let v = self.initial.velocity.each_ref().map(|e| e.eval(x, 0.0));
+                let (f, v) = match &exact {
+                    Some(exact) => (exact.deformation(x, 0.0), exact.velocity(x, 0.0)),
+                    None => self.initial.at(x),
+                };
                 self.check_initial(f, v, x, mesh.number(cell))?;
                 let u = [f[0], f[1], f[2], f[3], density * v[0], density * v[1]];
                 u.into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
@@ -260,6 +291,14 @@ impl Scene {
     }
 }
 
+impl scene::Initial {
+    /// F and v at X.
+    fn at(&self, x: [f64; 2]) -> ([f64; 4], [f64; 2]) {
+        let value = |e: &Expression| e.eval(x, 0.0);
+        (self.deformation.each_ref().map(value), self.velocity.each_ref().map(value))
+    }
+}
+
 /// What a line output samples.
 fn samples(output: &Output) -> Option<Samples> {
     let What::Line { from, to, samples } = output.what else { return None };
@@ -279,7 +318,8 @@ fn schedule(output: &Output) -> Schedule {
 fn condition(boundary: &Boundary) -> Box<dyn boundary::Boundary> {
     let zero = || data(&Expression::number(0.0));
     match &boundary.condition {
-        Condition::Free => Box::new(boundary::Free),
+        // The faces of a periodic group are inner faces: nothing asks for its condition.
+        Condition::Free | Condition::Periodic { .. } => Box::new(boundary::Free),
         Condition::Symmetry => Box::new(boundary::Wall { speed: None }),
         Condition::Wall { speed } if speed.constant() == Some(0.0) => Box::new(boundary::Wall { speed: None }),
         Condition::Wall { speed } => Box::new(boundary::Wall { speed: Some(data(speed)) }),

@@ -1,6 +1,6 @@
 //! The groups that a scene names against those of the mesh.
 
-use super::Scene;
+use super::{Condition, Scene};
 use crate::error::Result;
 use crate::scene::suggest;
 
@@ -10,11 +10,16 @@ impl Scene {
     pub fn check_groups(&self, cell_groups: &[String], edge_groups: &[String]) -> Result<()> {
         let materials: Vec<Option<&str>> = self.materials.iter().map(|material| material.group.as_deref()).collect();
         let sources = self.sources.iter().map(|source| source.group.as_deref());
-        let boundaries: Vec<Option<&str>> =
+        let mut boundaries: Vec<Option<&str>> =
             self.boundaries.iter().map(|boundary| Some(boundary.group.as_str())).collect();
         self.check_exist("material", "cells", materials.iter().copied(), cell_groups)?;
         self.check_exist("source", "cells", sources, cell_groups)?;
         self.check_exist("boundary", "boundary edges", boundaries.iter().copied(), edge_groups)?;
+        for (i, boundary) in self.boundaries.iter().enumerate() {
+            let Condition::Periodic { partner } = &boundary.condition else { continue };
+            self.check_exists(&format!("boundary.{i}.partner"), "boundary edges", partner, edge_groups)?;
+            boundaries.push(Some(partner));
+        }
         self.check_sources(cell_groups)?;
         if !materials.contains(&None) {
             let remedy = "every cell needs a material: add one, or leave out `group` of the only one";
@@ -44,20 +49,20 @@ impl Scene {
         named: impl Iterator<Item = Option<&'a str>>,
         existing: &[String],
     ) -> Result<()> {
-        let known: Vec<&str> = existing.iter().map(String::as_str).collect();
         for (i, group) in named.enumerate() {
-            let Some(group) = group.filter(|group| !known.contains(group)) else { continue };
-            let remedy = match known[..] {
-                [] => format!("the mesh has no named group of {of}: name one there (a physical group of Gmsh)"),
-                _ => format!("{}its groups of {of} are {}", suggest::did_you_mean(group, &known), known.join(", ")),
-            };
-            return Err(self.error(
-                &format!("{table}.{i}.group"),
-                format!("the mesh has no group \"{group}\""),
-                remedy,
-            ));
+            group.map_or(Ok(()), |group| self.check_exists(&format!("{table}.{i}.group"), of, group, existing))?;
         }
         Ok(())
+    }
+
+    fn check_exists(&self, key: &str, of: &str, group: &str, existing: &[String]) -> Result<()> {
+        let known: Vec<&str> = existing.iter().map(String::as_str).collect();
+        let remedy = match known[..] {
+            _ if known.contains(&group) => return Ok(()),
+            [] => format!("the mesh has no named group of {of}: name one there (a physical group of Gmsh)"),
+            _ => format!("{}its groups of {of} are {}", suggest::did_you_mean(group, &known), known.join(", ")),
+        };
+        Err(self.error(key, format!("the mesh has no group \"{group}\""), remedy))
     }
 
     fn check_covered(&self, table: &str, named: &[Option<&str>], existing: &[String], remedy: &str) -> Result<()> {

@@ -1,7 +1,7 @@
 //! The laws that scenes can name, with their parameters: what a `[[material]]` is checked against.
 
 use super::reader::{Check, POSITIVE};
-use crate::material::{self, NeoHookean};
+use crate::material::{self, LinearElastic, NeoHookean};
 
 /// A law and its parameters, all required.
 #[derive(Debug)]
@@ -28,16 +28,26 @@ pub struct Parameter {
     pub(super) check: Check,
 }
 
+/// Young's modulus and Poisson's ratio.
+const ISOTROPIC: &[Parameter] = &[
+    Parameter { name: "young", unit: "Pa", check: POSITIVE },
+    Parameter {
+        name: "poisson",
+        unit: "",
+        check: Check { range: "greater than -1 and less than 0.5", holds: |nu| nu > -1.0 && nu < 0.5 },
+    },
+];
+
 /// Every law.
-pub const LAWS: &[Law] = &[Law {
-    name: "neo-hookean",
-    parameters: &[
-        Parameter { name: "young", unit: "Pa", check: POSITIVE },
-        Parameter {
-            name: "poisson",
-            unit: "",
-            check: Check { range: "greater than -1 and less than 0.5", holds: |nu| nu > -1.0 && nu < 0.5 },
-        },
-    ],
-    build: |of, density| material::Law::NeoHookean(NeoHookean::new(of("young"), of("poisson"), density)),
-}];
+pub const LAWS: &[Law] = &[
+    Law {
+        name: "neo-hookean",
+        parameters: ISOTROPIC,
+        build: |of, density| material::Law::NeoHookean(NeoHookean::new(of("young"), of("poisson"), density)),
+    },
+    Law {
+        name: "linear-elastic",
+        parameters: ISOTROPIC,
+        build: |of, density| material::Law::Linear(LinearElastic::new(of("young"), of("poisson"), density)),
+    },
+];

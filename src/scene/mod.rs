@@ -5,6 +5,7 @@
 //! and lists what exists. A scene knows neither mesh nor solver: names become types elsewhere. Units are SI.
 
 pub mod build;
+mod exact;
 mod expression;
 mod groups;
 mod laws;
@@ -26,6 +27,7 @@ use toml_edit::{Document, DocumentMut};
 use crate::error::{Error, Place, Result};
 pub use crate::observe::Field;
 pub use crate::riemann::Flux;
+pub use exact::{Exact, SOLUTIONS};
 pub use expression::{Expression, FUNCTIONS, Fault};
 pub use laws::{LAWS, Law, Parameter};
 pub use names::{Method, Sweeps};
@@ -44,6 +46,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// The state at t = 0.
     pub initial: Initial,
+    /// The exact solution, where one is named.
+    pub exact: Option<Exact>,
     /// The conditions on the groups of boundary edges.
     pub boundaries: Vec<Boundary>,
     /// Body forces.
@@ -159,6 +163,11 @@ pub enum Condition {
     Traction([Expression; 2]),
     /// Nothing comes in.
     Absorbing,
+    /// The body goes on at another group, which a translation takes this one to.
+    Periodic {
+        /// The other group; it needs no entry of its own.
+        partner: String,
+    },
 }
 
 /// A force on the volume.
@@ -284,6 +293,7 @@ impl Scene {
         }
         let run = origin.run.clone();
         let scene = read::scene(&document(&run, path)?, origin)?;
+        scene.check_exact()?;
         if let Mesh::Rectangle { .. } = scene.mesh {
             let edges = ["left", "right", "bottom", "top"].map(str::to_owned);
             scene.check_groups(&["body".to_owned()], &edges)?;

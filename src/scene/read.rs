@@ -15,12 +15,13 @@ use crate::error::Result;
 /// Reads a whole scene.
 pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> {
     let mut root = Reader::new(document.as_table(), Vec::new(), &origin, "the scene".to_owned());
-    root.later(&["limiter", "regrid", "exact", "checkpoint"]);
+    root.later(&["limiter", "regrid", "checkpoint"]);
     let title = root.text("title")?;
     let mut mesh_table = root.table("mesh")?;
     let mut cloud_table = root.table("cloud")?;
     let mut material_tables = root.tables("material")?;
     let mut initial_table = root.table("initial")?;
+    let mut exact_table = root.table("exact")?;
     let boundary_tables = root.tables("boundary")?;
     let source_tables = root.tables("source")?;
     let mut curl_table = root.table("curl")?;
@@ -44,6 +45,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         cloud,
         materials,
         initial: initial(initial_table.as_mut())?,
+        exact: super::exact::exact(exact_table.as_mut(), initial_table.is_none())?,
         boundaries: boundaries(boundary_tables)?,
         sources: source_tables.into_iter().map(source).collect::<Result<_>>()?,
         curl: curl(curl_table.as_mut(), scheme.degree)?,
@@ -253,9 +255,10 @@ enum Kind {
     Velocity,
     Traction,
     Absorbing,
+    Periodic,
 }
 
-const KINDS: [(&str, Kind); 7] = [
+const KINDS: [(&str, Kind); 8] = [
     ("wall", Kind::Wall),
     ("symmetry", Kind::Symmetry),
     ("free", Kind::Free),
@@ -263,6 +266,7 @@ const KINDS: [(&str, Kind); 7] = [
     ("velocity", Kind::Velocity),
     ("traction", Kind::Traction),
     ("absorbing", Kind::Absorbing),
+    ("periodic", Kind::Periodic),
 ];
 
 fn boundaries(tables: Vec<Reader>) -> Result<Vec<Boundary>> {
@@ -273,15 +277,35 @@ fn boundaries(tables: Vec<Reader>) -> Result<Vec<Boundary>> {
             let what = format!("two [[boundary]] on the group \"{}\"", boundary.group);
             return Err(table.wrong("group", what, "a group of edges has one condition: remove one"));
         }
+        if matches!(&boundary.condition, Condition::Periodic { partner } if *partner == boundary.group) {
+            let what = format!("the group \"{}\" is its own `partner`", boundary.group);
+            return Err(table.wrong("partner", what, "name the group at the other side of the body"));
+        }
+        if let Some(other) = boundaries.iter().find(|other| rivals(other, &boundary)) {
+            let what = format!("the conditions of \"{}\" and \"{}\" do not agree", other.group, boundary.group);
+            let remedy = "a group has one `partner`, which is periodic to it or has no [[boundary]] of its own";
+            return Err(table.wrong("group", what, remedy));
+        }
         boundaries.push(boundary);
     }
     Ok(boundaries)
 }
 
+/// Whether one names the other or a third as its partner, and is not named back.
+fn rivals(a: &Boundary, b: &Boundary) -> bool {
+    let partner = |boundary: &Boundary| match &boundary.condition {
+        Condition::Periodic { partner } => Some(partner.clone()),
+        _ => None,
+    };
+    let (of_a, of_b) = (partner(a), partner(b));
+    let (to_b, to_a) = (of_a.as_ref() == Some(&b.group), of_b.as_ref() == Some(&a.group));
+    to_a != to_b || (of_a.is_some() && of_a == of_b)
+}
+
 fn boundary(table: &mut Reader) -> Result<Boundary> {
-    table.later(&["gap", "friction", "partner"]);
+    table.later(&["gap", "friction"]);
     let group = table.text("group")?;
-    let kind = table.choice("kind", &KINDS, &["unilateral", "periodic", "contact"])?;
+    let kind = table.choice("kind", &KINDS, &["unilateral", "contact"])?;
     let names: Vec<&str> = KINDS.iter().map(|(name, _)| *name).collect();
     let kind = kind.ok_or_else(|| table.missing("kind", &format!("one of {}", names.join(", "))))?;
     let value = |table: &mut Reader, unit: &str| {
@@ -296,6 +320,11 @@ fn boundary(table: &mut Reader) -> Result<Boundary> {
         Kind::Velocity => Condition::Velocity(value(table, "m/s")?),
         Kind::Traction => Condition::Traction(value(table, "Pa")?),
         Kind::Absorbing => Condition::Absorbing,
+        Kind::Periodic => {
+            let partner = table.text("partner")?;
+            let remedy = "the group at the other side of the body, for instance \"right\"";
+            Condition::Periodic { partner: partner.ok_or_else(|| table.missing("partner", remedy))? }
+        }
     };
     table.of_kind(names[kind as usize]);
     table.finish()?;

@@ -221,3 +221,66 @@ fn layouts_per_material() {
     assert_eq!(file.cloud_path(), Some(PathBuf::from("folder/points.vtu")));
     assert!(message(&text, &["cloud={layout=\"file\", path=\"p\"}"]).contains("the points come from the file"));
 }
+
+/// [`MINIMAL`] with other conditions on the left, right and at the top.
+fn with_sides(left: &str, right: &str, top: &str) -> String {
+    let side = |text: String, group: &str, old: &str, new: &str| {
+        text.replace(&format!("group = \"{group}\"\nkind = \"{old}\""), &format!("group = \"{group}\"\n{new}"))
+    };
+    let text = side(MINIMAL.to_owned(), "left", "wall", left);
+    side(side(text, "right", "free", right), "top", "symmetry", top)
+}
+
+#[test]
+fn periodic_groups_are_named_once_or_by_both_and_join_the_mesh() {
+    let (left, right) = ("kind = \"periodic\"\npartner = \"right\"", "kind = \"periodic\"\npartner = \"left\"");
+    let symmetry = "kind = \"symmetry\"";
+    let both = parse(&with_sides(left, right, symmetry), &[]).unwrap();
+    let once = with_sides(left, right, symmetry).replace(&format!("[[boundary]]\ngroup = \"right\"\n{right}\n"), "");
+    let once = parse(&once, &[]).unwrap();
+    assert_eq!((both.boundaries.len(), once.boundaries.len()), (4, 3));
+    for scene in [both, once] {
+        let mesh = scene.build_mesh().unwrap();
+        assert_eq!(scene.periodic_groups(&mesh), [[0, 1]]);
+        let across = crate::mesh::Link::Cell { cell: 29, face: 1, flip: false };
+        assert_eq!(scene.links(&mesh).unwrap()[0][0], across);
+    }
+}
+
+#[test]
+fn partners_that_do_not_agree_are_refused() {
+    let (left, symmetry) = ("kind = \"periodic\"\npartner = \"right\"", "kind = \"symmetry\"");
+    let agree = "do not agree";
+    for (text, part) in [
+        (with_sides(left, "kind = \"free\"", symmetry), agree),
+        (with_sides(left, "kind = \"periodic\"\npartner = \"top\"", symmetry), agree),
+        (with_sides(left, "kind = \"periodic\"\npartner = \"left\"", left), agree),
+        (with_sides("kind = \"periodic\"\npartner = \"left\"", "kind = \"free\"", symmetry), "its own `partner`"),
+        (with_sides("kind = \"periodic\"", "kind = \"free\"", symmetry), "needs the key `partner`"),
+        (with_sides("kind = \"periodic\"\npartner = \"rigt\"", "kind = \"free\"", symmetry), "did you mean `right`"),
+    ] {
+        let error = message(&text, &[]);
+        assert!(error.contains(part), "{error}");
+    }
+}
+
+#[test]
+fn exact_solutions_have_defaults_and_fit_law_and_end() {
+    let scene = parse(MINIMAL, &["exact.kind=simple-wave", "exact.width=0.2", "time.end=1e-4"]).unwrap();
+    let exact = scene.exact.as_ref().unwrap();
+    assert_eq!((exact.parameters["amplitude"], exact.parameters["width"], exact.initial), (0.1, 0.2, true));
+    assert!(scene.build_exact().unwrap().body_force([0.0; 2], 0.0).is_none());
+    let given = parse(MINIMAL, &["exact.kind=wall-impact", "initial.velocity=[-200, 0]"]).unwrap();
+    assert!(!given.exact.unwrap().initial);
+    assert!(parse(MINIMAL, &["exact.kind=linear-bar", "material.0.law=linear-elastic"]).is_ok());
+    for (sets, part) in [
+        (&["exact.kind=simple-wave"][..], "then it breaks"),
+        (&["exact.kind=linear-bar"], "linear-elastic"),
+        (&["exact.kind=simple-wav"], "did you mean `simple-wave`"),
+        (&["exact.kind=wall-impact", "exact.width=1"], "unknown key `width`"),
+        (&["exact.speed=1"], "needs the key `kind`"),
+    ] {
+        let error = message(MINIMAL, sets);
+        assert!(error.contains(part), "{error}");
+    }
+}

@@ -1,0 +1,92 @@
+//! The error of a state against an exact solution, by grid quadrature with N + 3 points per direction.
+
+use super::Exact;
+use crate::mesh::{Mesh, map};
+use crate::observe::Solution;
+use crate::quadrature::gauss_legendre;
+use crate::state::State;
+use crate::step::Scheme;
+
+/// Norms of an error e over the body, with |e| the Euclidean norm of its components in the plane.
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
+pub struct Norms {
+    /// int |e| dX.
+    pub l1: f64,
+    /// sqrt(int |e|^2 dX).
+    pub l2: f64,
+    /// max |e| over the quadrature points.
+    pub linf: f64,
+}
+
+impl Norms {
+    fn add(&mut self, error: &[f64], weight: f64) {
+        let square: f64 = error.iter().map(|e| e * e).sum();
+        self.l1 += weight * square.sqrt();
+        self.l2 += weight * square;
+        self.linf = self.linf.max(square.sqrt());
+    }
+}
+
+/// Errors of a state.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Errors {
+    /// Of F.
+    pub deformation: Norms,
+    /// Of v, m/s.
+    pub velocity: Norms,
+    /// Of P, Pa.
+    pub piola: Norms,
+    /// sqrt(int |F - F_ex|^2 + |v - v_ex|^2 / c_p^2 dX), c_p at F = 1.
+    pub distance: f64,
+    /// `distance` over sqrt(int |F_ex - 1|^2 + |v_ex|^2 / c_p^2 dX): the standard measure where one number is meant.
+    pub standard: f64,
+}
+
+impl Errors {
+    /// The fields with their names.
+    pub fn fields(&self) -> [(&'static str, Norms); 3] {
+        [("deformation", self.deformation), ("velocity", self.velocity), ("piola", self.piola)]
+    }
+}
+
+/// The errors of `state` at its time; `material` gives the law of each cell.
+pub fn errors(exact: &dyn Exact, mesh: &Mesh, scheme: &Scheme, state: &State, material: &[usize]) -> Errors {
+    let solution = Solution::of_state(scheme, state, material);
+    let (points, weights) = gauss_legendre(solution.basis.len() + 2);
+    let xi: Vec<[f64; 2]> = points.iter().flat_map(|&a| points.iter().map(move |&b| [a, b])).collect();
+    let weights: Vec<f64> = weights.iter().flat_map(|a| weights.iter().map(move |b| a * b)).collect();
+    let basis: Vec<Vec<f64>> = xi.iter().map(|&xi| solution.basis.values_2d(xi)).collect();
+    let mut sum = Errors::default();
+    for cell in 0..mesh.cells.len() {
+        let (corners, law) = (mesh.corners(cell), solution.law(cell));
+        let slowness = 1.0 / law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0];
+        for ((&xi, weight), basis) in xi.iter().zip(&weights).zip(&basis) {
+            let x = map::position(&corners, xi);
+            let weight = weight * map::determinant(&map::jacobian(&corners, xi)).abs();
+            let found = solution.combine(cell, basis);
+            let (f, v) = (exact.deformation(x, state.time), exact.velocity(x, state.time));
+            let (p, expected) = (law.stress(found.deformation), law.stress(f));
+            let error_f: [f64; 4] = std::array::from_fn(|k| found.deformation[k] - f[k]);
+            let error_v = [found.velocity[0] - v[0], found.velocity[1] - v[1]];
+            let error_p: [f64; 4] = std::array::from_fn(|k| p[k] - expected[k]);
+            sum.deformation.add(&error_f, weight);
+            sum.velocity.add(&error_v, weight);
+            sum.piola.add(&error_p, weight);
+            sum.distance += weight * measure(error_f, error_v, slowness);
+            sum.standard += weight * measure([f[0] - 1.0, f[1], f[2], f[3] - 1.0], v, slowness);
+        }
+    }
+    for norms in [&mut sum.deformation, &mut sum.velocity, &mut sum.piola] {
+        norms.l2 = norms.l2.sqrt();
+    }
+    // A solution at rest and unstrained has no size to compare with.
+    let size = if sum.standard > 0.0 { sum.standard.sqrt() } else { 1.0 };
+    sum.distance = sum.distance.sqrt();
+    sum.standard = sum.distance / size;
+    sum
+}
+
+/// |f|^2 + |v|^2 / c_p^2.
+fn measure(f: [f64; 4], v: [f64; 2], slowness: f64) -> f64 {
+    f.iter().map(|f| f * f).sum::<f64>() + v.iter().map(|v| (v * slowness).powi(2)).sum::<f64>()
+}

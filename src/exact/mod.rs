@@ -1,0 +1,79 @@
+//! Exact and manufactured solutions, and the error of a computed state against them.
+//!
+//! A new solution is one file with a type that implements [`Exact`] and its entry in the scene's registry.
+
+mod dual;
+mod errors;
+mod linear_bar;
+mod manufactured;
+mod simple_wave;
+mod vortex;
+mod wall_impact;
+
+pub use dual::Dual;
+pub use errors::{Errors, Norms, errors};
+pub use linear_bar::LinearBar;
+pub use manufactured::Manufactured;
+pub use simple_wave::SimpleWave;
+pub use vortex::Vortex;
+pub use wall_impact::WallImpact;
+
+use crate::material::{Law, Material};
+use crate::source::Source;
+use crate::with_law;
+use std::sync::Arc;
+
+/// A solution of (1), (2) in reference coordinates X (m) and time t (s).
+pub trait Exact: Send + Sync {
+    /// F = [F11, F12, F21, F22].
+    fn deformation(&self, x: [f64; 2], t: f64) -> [f64; 4];
+
+    /// v, m/s.
+    fn velocity(&self, x: [f64; 2], t: f64) -> [f64; 2];
+
+    /// b, m/s^2, of a solution that needs a body force: b = dv/dt - Div P / rho0.
+    fn body_force(&self, _x: [f64; 2], _t: f64) -> Option<[f64; 2]> {
+        None
+    }
+
+    /// The time until which it is the solution, s (a simple wave breaks).
+    fn until(&self) -> f64 {
+        f64::INFINITY
+    }
+}
+
+/// The body force of an exact solution, as a source.
+pub struct ExactForce(pub Arc<dyn Exact>);
+
+impl Source for ExactForce {
+    fn acceleration(&self, x: [f64; 2], time: f64, _: usize) -> [f64; 2] {
+        self.0.body_force(x, time).unwrap_or_default()
+    }
+}
+
+/// Div P / rho0, m/s^2, where `slopes[a]` is F and its derivative along X_a: through the code of the law itself.
+fn acceleration_of_stress(law: &Law, slopes: [[Dual; 4]; 2]) -> [f64; 2] {
+    let [along1, along2] = slopes.map(|f| with_law!(law, law => law.stress(f, &mut [])));
+    [0, 1].map(|i| (along1[2 * i].slope + along2[2 * i + 1].slope) / law.density())
+}
+
+/// The law's c_p (m/s) along X1 under uniaxial F11.
+fn uniaxial_speed(law: &Law, f11: f64) -> f64 {
+    law.speeds([f11, 0.0, 0.0, 1.0], [1.0, 0.0])[0]
+}
+
+/// The zero of a function with opposite signs at the ends, to the last bit that bisection can tell.
+fn bisect(ends: [f64; 2], function: impl Fn(f64) -> f64) -> f64 {
+    let [mut low, mut high] = ends;
+    let sign = function(low) > 0.0;
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle == low || middle == high {
+            return middle;
+        }
+        if (function(middle) > 0.0) == sign { low = middle } else { high = middle }
+    }
+}
+
+#[cfg(test)]
+mod tests;
