@@ -135,7 +135,7 @@ mod tests {
             let stored = build(&case, &needs);
             let points = stored.points.as_ref().unwrap();
             assert_eq!((points.shared.len(), points.own.len()), if layout == JITTER { (0, 2) } else { (1, 0) });
-            let key = key(&case.mesh, &MATERIAL, &needs);
+            let key = key(&case.mesh, &[], &MATERIAL, &needs);
             write(&path, &key, &stored).unwrap();
             // Every number is finite, so that equality is that of bits but for the sign of 0.
             let back = read(&path, &key, &case.blocks, &needs).unwrap().unwrap();
@@ -157,19 +157,20 @@ mod tests {
         let mut other_law = MATERIAL;
         other_law[3] = 1;
         let keys = [
-            key(&a.mesh, &MATERIAL, &base),
-            key(&other_mesh, &MATERIAL, &base),
-            key(&a.mesh, &other_law, &base),
-            key(&a.mesh, &MATERIAL, &needs(&b.cloud)),
-            key(&a.mesh, &MATERIAL, &Needs { degree: 1, ..base }),
-            key(&a.mesh, &MATERIAL, &Needs { curl_free: false, ..base }),
-            key(&a.mesh, &MATERIAL, &Needs { sampling: Some(Sampling::Nodes), ..base }),
-            key(&a.mesh, &MATERIAL, &Needs { sampling: None, ..base }),
+            key(&a.mesh, &[], &MATERIAL, &base),
+            key(&other_mesh, &[], &MATERIAL, &base),
+            key(&a.mesh, &[], &other_law, &base),
+            key(&a.mesh, &[[0, 1]], &MATERIAL, &base),
+            key(&a.mesh, &[], &MATERIAL, &needs(&b.cloud)),
+            key(&a.mesh, &[], &MATERIAL, &Needs { degree: 1, ..base }),
+            key(&a.mesh, &[], &MATERIAL, &Needs { curl_free: false, ..base }),
+            key(&a.mesh, &[], &MATERIAL, &Needs { sampling: Some(Sampling::Nodes), ..base }),
+            key(&a.mesh, &[], &MATERIAL, &Needs { sampling: None, ..base }),
         ];
         for (i, one) in keys.iter().enumerate() {
             assert!(!keys[..i].contains(one), "key {i} is not new");
         }
-        assert_eq!(keys[0], key(&a.mesh.clone(), &MATERIAL, &needs(&a.cloud.clone())));
+        assert_eq!(keys[0], key(&a.mesh.clone(), &[], &MATERIAL, &needs(&a.cloud.clone())));
     }
 
     #[test]
