@@ -9,7 +9,8 @@ use super::Cloud;
 use crate::quadrature::gauss_legendre;
 
 /// Where the points of a cell lie, as fractions of its parent square in each direction.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Layout {
     /// The paper's: {1/2}, {1/4, 3/4}, {1/4, 1/2, 3/4}, and {i/(k+1)} for k >= 4.
     Paper,

@@ -99,7 +99,11 @@ impl Scene {
         let material = self.material_of_cells(mesh);
         let choice = |cell: usize| {
             let cloud = &self.materials[material[cell]].cloud;
-            (layout(&cloud.layout), cloud.per_direction)
+            match cloud.layout {
+                Layout::Lattice(layout) => (layout, cloud.per_direction),
+                // Only [cloud] can name a file, and it has none here.
+                Layout::File(_) => (seed::default_layout(self.scheme.degree), cloud.per_direction),
+            }
         };
         Ok(seed::seed_by(mesh.cells.len(), choice))
     }
@@ -327,16 +331,6 @@ fn condition(boundary: &Boundary) -> Box<dyn boundary::Boundary> {
         Condition::Velocity(value) => Box::new(boundary::Velocity { value: pair(value) }),
         Condition::Traction(value) => Box::new(boundary::Traction { value: pair(value) }),
         Condition::Absorbing => Box::new(boundary::Absorbing),
-    }
-}
-
-/// A lattice of the scene as that of the seeder; files are read elsewhere.
-fn layout(layout: &Layout) -> seed::Layout {
-    match *layout {
-        Layout::Paper => seed::Layout::Paper,
-        Layout::Gauss => seed::Layout::Gauss,
-        Layout::Jitter { seed, amount } => seed::Layout::Jitter { seed, amount },
-        Layout::Midpoints | Layout::File(_) => seed::Layout::Midpoints,
     }
 }
 

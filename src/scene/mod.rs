@@ -24,6 +24,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use toml_edit::{Document, DocumentMut};
 
+use crate::cloud::seed;
 use crate::error::{Error, Place, Result};
 pub use crate::observe::Field;
 pub use crate::riemann::Flux;
@@ -88,23 +89,12 @@ pub struct Cloud {
     pub per_direction: usize,
 }
 
-/// The pattern of the points in a cell, in parent coordinates.
+/// Where the points come from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Layout {
-    /// {1/4, 3/4}, {1/4, 1/2, 3/4}, {i/(k+1)}.
-    Paper,
-    /// {(i - 1/2)/k}.
-    Midpoints,
-    /// The Gauss-Legendre points.
-    Gauss,
-    /// `Midpoints`, each shifted at random.
-    Jitter {
-        /// Seed of the random numbers.
-        seed: u64,
-        /// Largest shift per direction, as a fraction of the spacing 1/k; 0 to 0.5.
-        amount: f64,
-    },
+    /// The same pattern in every cell.
+    Lattice(seed::Layout),
     /// The points of a file, as written in the scene ([`Scene::resolve`] makes it a path).
     File(PathBuf),
 }

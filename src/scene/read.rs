@@ -10,6 +10,7 @@ use super::{
     Boundary, Cloud, Condition, Curl, Expression, Flux, Initial, LAWS, Layout, Material, Mesh, Method, Scene, Scheme,
     Source, Step, Sweeps,
 };
+use crate::cloud::seed;
 use crate::error::Result;
 
 /// Reads a whole scene.
@@ -125,7 +126,7 @@ const PATTERNS: [(&str, Pattern); 5] = [
 const AMOUNT: Check = Check { range: "from 0 to 0.5 (of the spacing)", holds: |a| (0.0..=0.5).contains(&a) };
 
 fn cloud(table: Option<&mut Reader>, degree: usize) -> Result<Cloud> {
-    let layout = if degree <= 2 { Layout::Paper } else { Layout::Midpoints };
+    let layout = Layout::Lattice(seed::default_layout(degree));
     let default = Cloud { layout, per_direction: degree + 1 };
     let Some(table) = table else { return Ok(default) };
     let pattern = table.choice("layout", &PATTERNS, &[])?;
@@ -147,17 +148,17 @@ fn points(table: &mut Reader, pattern: Option<Pattern>, path: Option<String>, de
         return Ok(Cloud { layout: Layout::File(PathBuf::from(path)), ..default });
     }
     let per_direction = table.integer("per_direction", 1..=30)?.unwrap_or(default.per_direction);
-    let layout = match pattern {
-        None | Some(Pattern::File) => default.layout,
-        Some(Pattern::Paper) => Layout::Paper,
-        Some(Pattern::Midpoints) => Layout::Midpoints,
-        Some(Pattern::Gauss) => Layout::Gauss,
-        Some(Pattern::Jitter) => Layout::Jitter {
+    let lattice = match pattern {
+        None | Some(Pattern::File) => return Ok(Cloud { per_direction, ..default }),
+        Some(Pattern::Paper) => seed::Layout::Paper,
+        Some(Pattern::Midpoints) => seed::Layout::Midpoints,
+        Some(Pattern::Gauss) => seed::Layout::Gauss,
+        Some(Pattern::Jitter) => seed::Layout::Jitter {
             seed: table.integer("seed", 0..=usize::MAX)?.unwrap_or(1) as u64,
-            amount: table.number("amount", AMOUNT)?.unwrap_or(crate::cloud::seed::Layout::JITTER),
+            amount: table.number("amount", AMOUNT)?.unwrap_or(seed::Layout::JITTER),
         },
     };
-    Ok(Cloud { layout, per_direction })
+    Ok(Cloud { layout: Layout::Lattice(lattice), per_direction })
 }
 
 fn materials(tables: &mut [Reader], cloud: &Cloud) -> Result<Vec<Material>> {
