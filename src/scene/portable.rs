@@ -13,28 +13,32 @@ impl Scene {
         // The text has been parsed before.
         let Ok(mut document) = self.to_toml().parse::<DocumentMut>() else { return self.to_toml() };
         if mesh || matches!(self.mesh, Mesh::File(_)) {
-            let table = table(&mut document, "mesh");
-            table.remove("rectangle");
-            put(table, "file", "mesh.h5");
+            in_table(&mut document, "mesh", |table| {
+                table.remove("rectangle");
+                put(table, "file", "mesh.h5");
+            });
         }
         if cloud || matches!(self.cloud.layout, Layout::File(_)) {
-            let table = table(&mut document, "cloud");
-            ["per_direction", "seed", "amount"].iter().for_each(|key| drop(table.remove(key)));
-            put(table, "layout", "file");
-            put(table, "path", "cloud.h5");
+            in_table(&mut document, "cloud", |table| {
+                ["per_direction", "seed", "amount"].iter().for_each(|key| drop(table.remove(key)));
+                put(table, "layout", "file");
+                put(table, "path", "cloud.h5");
+            });
             remove_points_of_materials(&mut document);
         }
         document.to_string()
     }
 }
 
-/// The table of a name, made where it is missing.
-fn table<'a>(document: &'a mut DocumentMut, name: &str) -> &'a mut dyn toml_edit::TableLike {
+/// Changes the table of a name, made where it is missing.
+fn in_table(document: &mut DocumentMut, name: &str, change: impl FnOnce(&mut dyn toml_edit::TableLike)) {
     let item = document.entry(name).or_insert(Item::Table(Table::new()));
     if !item.is_table_like() {
         *item = Item::Table(Table::new());
     }
-    item.as_table_like_mut().expect("it has just been made a table")
+    if let Some(table) = item.as_table_like_mut() {
+        change(table);
+    }
 }
 
 /// Gives a key a text, keeping the comments around the old value.
