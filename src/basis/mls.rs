@@ -14,7 +14,7 @@ const RANK_TOLERANCE: f64 = 1e-10;
 #[derive(Debug, Clone)]
 pub struct MovingLeastSquares {
     degree: usize,
-    /// Pmat^+, (N+1)^2 x N_p.
+    /// Pmat^+, (N+1)^2 x N_p; zero where the rank is too small.
     inverse: DMatrix<f64>,
     /// Numerical rank of Pmat; the cell can carry Q_N where it is (N+1)^2.
     pub rank: usize,
@@ -31,15 +31,14 @@ impl MovingLeastSquares {
         let size = (degree + 1) * (degree + 1);
         let rows: Vec<Vec<f64>> = xi.iter().map(|&x| legendre_2d(degree, x)).collect();
         let matrix = DMatrix::from_fn(xi.len().max(1), size, |p, m| rows.get(p).map_or(0.0, |row| row[m]));
-        let svd = matrix.try_svd(true, true, f64::EPSILON, 0).ok_or_else(|| {
+        let svd = matrix.clone().try_svd(false, false, f64::EPSILON, 0).ok_or_else(|| {
             Error::input("the points of a cell have coordinates that no fit can use", "give finite coordinates")
         })?;
         let (largest, smallest) = (svd.singular_values.max(), svd.singular_values.min());
         let rank = svd.rank(RANK_TOLERANCE * largest);
         let condition = if rank < size { f64::INFINITY } else { largest / smallest };
-        let inverse =
-            svd.pseudo_inverse(RANK_TOLERANCE * largest).map_err(|why| Error::input(why, "give finite coordinates"))?;
-        Ok(Self { degree, inverse, rank, condition })
+        let inverse = if rank < size { None } else { inverse(matrix) };
+        Ok(Self { degree, inverse: inverse.unwrap_or_else(|| DMatrix::zeros(size, xi.len())), rank, condition })
     }
 
     /// chi_p(xi) for each point p.
@@ -56,6 +55,13 @@ impl MovingLeastSquares {
     fn combine(&self, basis: &[f64]) -> Vec<f64> {
         self.inverse.column_iter().map(|column| column.iter().zip(basis).map(|(a, b)| a * b).sum()).collect()
     }
+}
+
+/// Pmat^+ = R^-1 Q^T of a matrix of full column rank. Not from singular vectors: the SVD at hand is off by up to 1e-8 where
+/// singular values nearly meet, as they do on lattices of which a few points are moved.
+fn inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let qr = matrix.qr();
+    qr.r().solve_upper_triangular(&qr.q().transpose())
 }
 
 /// Orthonormal shifted Legendre polynomials sqrt(2k+1) P_k(2x - 1) and their derivatives, k = 0..=N.
@@ -93,6 +99,8 @@ mod tests {
     }
 
     proptest! {
+        // Many, since it is rare clouds that a poor factorisation fails on: one in a thousand by nalgebra's SVD.
+        #![proptest_config(ProptestConfig::with_cases(5000))]
         #[test]
         fn reproduces_q_n_and_its_gradient_on_any_unisolvent_cloud(
             degree in 1usize..=4, extra in 0usize..=1, seed in prop::collection::vec(-0.2..0.2f64, 72), x in 0.0..1.0f64, y in 0.0..1.0f64) {

@@ -15,7 +15,7 @@ pub struct Certificate {
     pub rank: usize,
     /// Condition number of the fit.
     pub condition: f64,
-    /// Face Lebesgue constant: max over face points of sum_p |chi_p|.
+    /// Face Lebesgue constant: max over face points of sum_p |chi_p|; infinite where the rank is too small.
     pub lebesgue: f64,
     /// h_e, m: the time step is proportional to it.
     pub h: f64,
@@ -40,6 +40,6 @@ fn quality(line: &Line, xi: &[[f64; 2]]) -> Result<Certificate, Error> {
     let along = &line.basis.nodes;
     let faces = along.iter().flat_map(|&s| [[0.0, s], [1.0, s], [s, 0.0], [s, 1.0]]);
     let sums = faces.map(|x| fit.values(x).iter().map(|chi| chi.abs()).sum::<f64>());
-    let lebesgue = sums.fold(0.0, f64::max);
+    let lebesgue = if fit.condition.is_finite() { sums.fold(0.0, f64::max) } else { f64::INFINITY };
     Ok(Certificate { points: xi.len(), rank: fit.rank, condition: fit.condition, lebesgue, h: 0.0 })
 }
