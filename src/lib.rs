@@ -66,6 +66,7 @@ pub mod observe;
 pub mod run;
 pub mod exact;
 pub mod scene;
+pub mod study;
 pub mod cli;
 
 pub use error::{Error, Place};

@@ -9,6 +9,7 @@ mod progress;
 mod run;
 mod seed;
 mod solve;
+mod study;
 mod summary;
 
 use crate::error::{Error, Result};
@@ -48,6 +49,8 @@ enum Command {
     Solve(solve::Args),
     /// Run a scene: mesh, seed, preprocess and solve in one go
     Run(run::Args),
+    /// Show what accuracy costs in time: methods, degrees and meshes on one problem
+    Study(study::Args),
     /// Write a run's snapshots for ParaView, meshio and DOLFINx
     Export(export::Args),
 }
@@ -63,6 +66,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Command::Preprocess(args) => preprocess::run(&args),
         Command::Solve(args) => solve::run(&args),
         Command::Run(args) => run::run(&args),
+        Command::Study(args) => study::run(&args),
         Command::Export(args) => export::run(&args),
     }
 }
@@ -100,13 +104,17 @@ impl RunArgs {
 
     /// Starts the threads.
     fn start_threads(&self) -> Result<()> {
-        let Some(threads) = self.threads else { return Ok(()) };
-        if threads == 0 {
-            return Err(Error::input("--threads is 0", "give a number of threads from 1"));
-        }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-        pool.map_err(|why| Error::input(format!("cannot start {threads} threads: {why}"), "give a smaller --threads"))
+        self.threads.map_or(Ok(()), start_threads)
     }
+}
+
+/// Starts so many threads for all that follows.
+fn start_threads(threads: usize) -> Result<()> {
+    if threads == 0 {
+        return Err(Error::input("--threads is 0", "give a number of threads from 1"));
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    pool.map_err(|why| Error::input(format!("cannot start {threads} threads: {why}"), "give a smaller --threads"))
 }
 
 /// Refuses to write over a file unless `force`.

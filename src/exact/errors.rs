@@ -1,6 +1,7 @@
 //! The error of a state against an exact solution, by grid quadrature with N + 3 points per direction.
 
 use super::Exact;
+use crate::material::Law;
 use crate::mesh::{Mesh, map};
 use crate::observe::Solution;
 use crate::quadrature::gauss_legendre;
@@ -43,6 +44,18 @@ pub struct Errors {
 }
 
 impl Errors {
+    /// From sums of squares to norms.
+    fn rooted(mut self) -> Self {
+        for norms in [&mut self.deformation, &mut self.velocity, &mut self.piola] {
+            norms.l2 = norms.l2.sqrt();
+        }
+        // A solution at rest and unstrained has no size to compare with.
+        let size = if self.standard > 0.0 { self.standard.sqrt() } else { 1.0 };
+        self.distance = self.distance.sqrt();
+        self.standard = self.distance / size;
+        self
+    }
+
     /// The fields with their names.
     pub fn fields(&self) -> [(&'static str, Norms); 3] {
         [("deformation", self.deformation), ("velocity", self.velocity), ("piola", self.piola)]
@@ -52,23 +65,39 @@ impl Errors {
 /// The errors of `state` at its time; `material` gives the law of each cell.
 pub fn errors(exact: &dyn Exact, mesh: &Mesh, scheme: &Scheme, state: &State, material: &[usize]) -> Errors {
     let solution = Solution::of_state(scheme, state, material);
-    let (points, weights) = gauss_legendre(solution.basis.len() + 2);
+    let order = solution.basis.len() + 2;
+    compare(mesh, order, &|cell| solution.law(cell), &|cell, xi, x| {
+        let found = solution.at(cell, xi);
+        let expected = (exact.deformation(x, state.time), exact.velocity(x, state.time));
+        [(found.deformation, found.velocity), expected]
+    })
+}
+
+/// F and v, m/s, at a point.
+pub type Values = ([f64; 4], [f64; 2]);
+
+/// Errors between two solutions by quadrature with `order` points per direction in the cells of a mesh: `at(cell, xi, X)`
+/// gives what was found and what is expected there, `law` the law of a cell.
+pub fn compare<'a>(
+    mesh: &Mesh,
+    order: usize,
+    law: &dyn Fn(usize) -> &'a Law,
+    at: &dyn Fn(usize, [f64; 2], [f64; 2]) -> [Values; 2],
+) -> Errors {
+    let (points, weights) = gauss_legendre(order);
     let xi: Vec<[f64; 2]> = points.iter().flat_map(|&a| points.iter().map(move |&b| [a, b])).collect();
     let weights: Vec<f64> = weights.iter().flat_map(|a| weights.iter().map(move |b| a * b)).collect();
-    let basis: Vec<Vec<f64>> = xi.iter().map(|&xi| solution.basis.values_2d(xi)).collect();
     let mut sum = Errors::default();
     for cell in 0..mesh.cells.len() {
-        let (corners, law) = (mesh.corners(cell), solution.law(cell));
+        let (corners, law) = (mesh.corners(cell), law(cell));
         let slowness = 1.0 / law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0];
-        for ((&xi, weight), basis) in xi.iter().zip(&weights).zip(&basis) {
-            let x = map::position(&corners, xi);
+        for (&xi, weight) in xi.iter().zip(&weights) {
             let weight = weight * map::determinant(&map::jacobian(&corners, xi)).abs();
-            let found = solution.combine(cell, basis);
-            let (f, v) = (exact.deformation(x, state.time), exact.velocity(x, state.time));
-            let (p, expected) = (law.stress(found.deformation), law.stress(f));
-            let error_f: [f64; 4] = std::array::from_fn(|k| found.deformation[k] - f[k]);
-            let error_v = [found.velocity[0] - v[0], found.velocity[1] - v[1]];
-            let error_p: [f64; 4] = std::array::from_fn(|k| p[k] - expected[k]);
+            let [(found_f, found_v), (f, v)] = at(cell, xi, map::position(&corners, xi));
+            let (found_p, p) = (law.stress(found_f), law.stress(f));
+            let error_f: [f64; 4] = std::array::from_fn(|k| found_f[k] - f[k]);
+            let error_v = [found_v[0] - v[0], found_v[1] - v[1]];
+            let error_p: [f64; 4] = std::array::from_fn(|k| found_p[k] - p[k]);
             sum.deformation.add(&error_f, weight);
             sum.velocity.add(&error_v, weight);
             sum.piola.add(&error_p, weight);
@@ -76,14 +105,7 @@ pub fn errors(exact: &dyn Exact, mesh: &Mesh, scheme: &Scheme, state: &State, ma
             sum.standard += weight * measure([f[0] - 1.0, f[1], f[2], f[3] - 1.0], v, slowness);
         }
     }
-    for norms in [&mut sum.deformation, &mut sum.velocity, &mut sum.piola] {
-        norms.l2 = norms.l2.sqrt();
-    }
-    // A solution at rest and unstrained has no size to compare with.
-    let size = if sum.standard > 0.0 { sum.standard.sqrt() } else { 1.0 };
-    sum.distance = sum.distance.sqrt();
-    sum.standard = sum.distance / size;
-    sum
+    sum.rooted()
 }
 
 /// |f|^2 + |v|^2 / c_p^2.

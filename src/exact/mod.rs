@@ -11,7 +11,7 @@ mod vortex;
 mod wall_impact;
 
 pub use dual::Dual;
-pub use errors::{Errors, Norms, errors};
+pub use errors::{Errors, Norms, Values, compare, errors};
 pub use linear_bar::LinearBar;
 pub use manufactured::Manufactured;
 pub use simple_wave::SimpleWave;

@@ -6,6 +6,7 @@ pub mod faces;
 pub mod map;
 pub mod periodic;
 pub mod quality;
+mod refine;
 pub mod structured;
 
 pub use error::Error;

@@ -6,7 +6,7 @@ mod report;
 
 pub use folder::Folder;
 pub use norms::norms;
-pub use report::{Report, dofs};
+pub use report::{Report, dofs, peak_memory_mib};
 
 use crate::error::Error;
 use crate::mesh::Mesh;

@@ -291,6 +291,14 @@ impl Scene {
         Ok(scene)
     }
 
+    /// The scene with further overrides `key.path=value`.
+    ///
+    /// # Errors
+    /// As for [`Scene::load`].
+    pub fn with(&self, sets: &[String]) -> Result<Self> {
+        Self::parse(&self.to_toml(), self.path(), sets)
+    }
+
     /// The text as run: the file after overrides, with its comments.
     pub fn to_toml(&self) -> String {
         self.origin.run.clone()

@@ -1,0 +1,124 @@
+//! Uniform refinement: every cell becomes k x k cells.
+
+use super::{BoundaryEdge, FACE_CORNERS, Mesh, map};
+use std::collections::HashMap;
+
+impl Mesh {
+    /// The mesh whose cells are k x k parts of these, cut along their parent coordinates (k >= 1): the same bilinear
+    /// geometry and the same groups. Part (i, j) of cell c has the index k^2 c + k j + i; cells are numbered anew from 1.
+    pub fn refined(&self, k: usize) -> Mesh {
+        if k <= 1 {
+            return self.clone();
+        }
+        let mut out = Mesh { groups: self.groups.clone(), edge_groups: self.edge_groups.clone(), ..Mesh::default() };
+        let mut nodes = Nodes { mesh: self, k, of_mesh: HashMap::new(), on_edges: HashMap::new() };
+        for cell in 0..self.cells.len() {
+            let grid: Vec<usize> =
+                (0..=k).flat_map(|j| (0..=k).map(move |i| [i, j])).map(|at| nodes.find(cell, at, &mut out)).collect();
+            let node = |i: usize, j: usize| grid[(k + 1) * j + i];
+            for (j, i) in (0..k).flat_map(|j| (0..k).map(move |i| (j, i))) {
+                out.cells.push([node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]);
+                out.cell_group.push(self.cell_group[cell]);
+            }
+        }
+        out.original = (1..=out.cells.len() as u64).collect();
+        for edge in &self.edges {
+            let part = |along: usize| match edge.face {
+                0 => k * along,
+                1 => k * along + k - 1,
+                2 => along,
+                _ => k * (k - 1) + along,
+            };
+            let parts = (0..k).map(|along| BoundaryEdge { cell: k * k * edge.cell + part(along), ..*edge });
+            out.edges.extend(parts);
+        }
+        out
+    }
+}
+
+/// Nodes of the finer mesh that cells share.
+struct Nodes<'a> {
+    mesh: &'a Mesh,
+    k: usize,
+    /// By node of the mesh.
+    of_mesh: HashMap<usize, usize>,
+    /// By the two nodes of an edge (lower index first) and the step from the first.
+    on_edges: HashMap<([usize; 2], usize), usize>,
+}
+
+impl Nodes<'_> {
+    /// The node at (i, j) / k of a cell; made where it is new.
+    fn find(&mut self, cell: usize, [i, j]: [usize; 2], out: &mut Mesh) -> usize {
+        let k = self.k;
+        let corners = self.mesh.corners(cell);
+        let mut new = |x: [f64; 2]| {
+            out.nodes.push(x);
+            out.nodes.len() - 1
+        };
+        let face = match (i, j) {
+            _ if [0, k].contains(&i) && [0, k].contains(&j) => {
+                let corner = [[0, 3], [1, 2]][i / k][j / k];
+                let node = self.mesh.cells[cell][corner];
+                return *self.of_mesh.entry(node).or_insert_with(|| new(self.mesh.nodes[node]));
+            }
+            (0, _) => 0,
+            _ if i == k => 1,
+            (_, 0) => 2,
+            _ if j == k => 3,
+            _ => return new(map::position(&corners, [i as f64 / k as f64, j as f64 / k as f64])),
+        };
+        let [first, last] = FACE_CORNERS[face].map(|corner| self.mesh.cells[cell][corner]);
+        let along = if face < 2 { j } else { i };
+        let (ends, step) = if first < last { ([first, last], along) } else { ([last, first], k - along) };
+        *self.on_edges.entry((ends, step)).or_insert_with(|| {
+            // From the shared ends, not from the cell: both sides see the same bits.
+            let [a, b] = ends.map(|node| self.mesh.nodes[node]);
+            let s = step as f64 / k as f64;
+            new([0, 1].map(|axis| a[axis] + s * (b[axis] - a[axis])))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::mesh::{links, map, rectangle};
+
+    #[test]
+    fn a_refined_rectangle_is_the_finer_rectangle() {
+        let (fine, made) = (rectangle([3.0, 2.0], [6, 4]).unwrap(), rectangle([3.0, 2.0], [3, 2]).unwrap().refined(2));
+        assert_eq!((made.cells.len(), made.nodes.len(), made.edges.len()), (24, 35, 20));
+        let centres = |mesh: &crate::mesh::Mesh| {
+            let mut all: Vec<[i64; 2]> = (0..mesh.cells.len())
+                .map(|cell| map::position(&mesh.corners(cell), [0.5, 0.5]).map(|x| (x * 1e6).round() as i64))
+                .collect();
+            all.sort_unstable();
+            all
+        };
+        assert_eq!(centres(&fine), centres(&made));
+        for edge in &made.edges {
+            let ends = made.face_nodes(edge.cell, edge.face).map(|n| made.nodes[n]);
+            let (axis, value) = [(0, 0.0), (0, 3.0), (1, 0.0), (1, 2.0)][edge.group];
+            assert!(ends.iter().all(|x| x[axis] == value), "{edge:?} at {ends:?}");
+        }
+    }
+
+    #[test]
+    fn a_distorted_mesh_with_turned_cells_stays_whole_and_keeps_its_area() {
+        let mut mesh = rectangle([2.0, 2.0], [2, 2]).unwrap();
+        mesh.nodes[4] = [1.2, 0.9];
+        // The second cell starts at another corner: its faces run against those of its neighbours.
+        mesh.cells[1].rotate_left(2);
+        for edge in mesh.edges.iter_mut().filter(|edge| edge.cell == 1) {
+            edge.face = [1, 0, 3, 2][edge.face];
+        }
+        let fine = mesh.refined(3);
+        assert_eq!((fine.cells.len(), fine.nodes.len(), fine.edges.len()), (36, 49, 24));
+        let area = |mesh: &crate::mesh::Mesh| -> f64 {
+            (0..mesh.cells.len()).map(|cell| map::area(&mesh.corners(cell))).sum()
+        };
+        // Rounding of 36 sums.
+        assert!((area(&fine) - area(&mesh)).abs() < 1e-13);
+        // Every face has its neighbour or its group.
+        links(&fine.checked().unwrap()).unwrap();
+    }
+}

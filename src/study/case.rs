@@ -1,0 +1,256 @@
+//! One setting of a scene: built, run and measured.
+
+use super::SHORT;
+use super::predict::Prediction;
+use super::reference::Reference;
+use crate::error::{Error, Result};
+use crate::exact::Errors;
+use crate::lane::Kernel;
+use crate::mesh::{Mesh, map};
+use crate::operators::Operators;
+use crate::run::{Report, Run, Settings, Stop, dofs};
+use crate::scene::{self, Method, Scene, Step};
+use crate::state::State;
+use crate::step::Scheme;
+use std::sync::atomic::AtomicBool;
+
+/// Share of the stability limit in place of a scene's `cfl`: that number means another share for every degree.
+const SAFETY: f64 = 0.9;
+
+/// The settings that one line of a plot joins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// The method.
+    pub method: Method,
+    /// N = N_T.
+    pub degree: usize,
+    /// Where the points of ADER-DGMPM stand; none: as the scene says.
+    pub layout: Option<String>,
+}
+
+impl Series {
+    /// As in tables: `ader-dgmpm S2`, with the layout where the study varies it.
+    pub fn name(&self) -> String {
+        let layout = self.layout.as_ref().map_or(String::new(), |layout| format!(" {layout}"));
+        format!("{} S{}{layout}", self.method.name(), self.degree)
+    }
+}
+
+/// A series on one mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// The series.
+    pub series: Series,
+    /// Cells per direction over those of the scene.
+    pub refinement: f64,
+}
+
+impl Case {
+    /// Cells per direction of a rectangle; at least one.
+    pub fn rectangle(&self, cells: [usize; 2]) -> [usize; 2] {
+        cells.map(|n| ((n as f64 * self.refinement).round() as usize).max(1))
+    }
+
+    /// Parts per direction that cells of a mesh file are cut into.
+    fn parts(&self) -> usize {
+        (self.refinement.round() as usize).max(1)
+    }
+
+    /// The `--set` that make this case of the scene.
+    pub fn sets(&self, scene: &Scene) -> Vec<String> {
+        let Series { method, degree, layout } = &self.series;
+        let mut sets = vec![
+            format!("scheme.method={}", method.name()),
+            format!("scheme.degree={degree}"),
+            format!("scheme.time_degree={degree}"),
+        ];
+        sets.extend(layout.as_ref().map(|layout| format!("cloud.layout={layout}")));
+        if let scene::Mesh::Rectangle { cells, .. } = scene.mesh {
+            let [nx, ny] = self.rectangle(cells);
+            sets.push(format!("mesh.rectangle.cells=[{nx}, {ny}]"));
+        }
+        if matches!(scene.scheme.step, Step::Cfl(_)) {
+            sets.push(format!("scheme.safety={SAFETY}"));
+        }
+        sets
+    }
+
+    /// Number of cells, of which the mesh of the scene has `of_scene`.
+    pub(super) fn cells(&self, scene: &Scene, of_scene: usize) -> usize {
+        match scene.mesh {
+            scene::Mesh::Rectangle { cells, .. } => self.rectangle(cells).iter().product(),
+            scene::Mesh::File(_) => of_scene * self.parts() * self.parts(),
+        }
+    }
+
+    /// min_e h_e of its mesh, m, where that of the scene has `of_scene`.
+    pub(super) fn h(&self, scene: &Scene, of_scene: f64) -> f64 {
+        match scene.mesh {
+            scene::Mesh::Rectangle { size, cells } => {
+                let cells = self.rectangle(cells);
+                let [dx, dy] = [0, 1].map(|axis| size[axis] / cells[axis] as f64);
+                2.0 * dx * dy / (dx + dy)
+            }
+            scene::Mesh::File(_) => of_scene / self.parts() as f64,
+        }
+    }
+
+    /// Mesh, operators, scheme and initial state.
+    ///
+    /// # Errors
+    /// Bad input, as for a run of the scene.
+    pub fn build(&self, scene: &Scene) -> Result<Built> {
+        let mut scene = scene.with(&self.sets(scene))?;
+        // A study looks at the end only: outputs would ask for time, files and the displacement.
+        scene.outputs.clear();
+        let settings = scene.settings()?;
+        let mut mesh = scene.build_mesh()?;
+        if let scene::Mesh::File(_) = scene.mesh {
+            mesh = mesh.refined(self.parts());
+        }
+        let cloud = scene.build_cloud(&mesh)?;
+        let (material, needs) = (scene.material_of_cells(&mesh), scene.needs(&cloud));
+        let operators = Operators::build(&mesh, &scene.links(&mesh)?, &material, &needs)?;
+        let scheme = scene.build_scheme(&mesh, operators, Kernel::widest());
+        let start = scene.initial_state(&mesh, &scheme)?;
+        Ok(Built { mesh, material, points: cloud.len(), scheme, start, settings })
+    }
+}
+
+/// A case that is ready to run.
+pub struct Built {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// The law of each cell.
+    pub material: Vec<usize>,
+    /// Number of material points.
+    pub points: usize,
+    /// The scheme.
+    pub scheme: Scheme,
+    /// The initial state.
+    pub start: State,
+    /// End and step.
+    pub settings: Settings,
+}
+
+impl Built {
+    /// Runs to the end without outputs.
+    ///
+    /// # Errors
+    /// See [`Stop`].
+    pub fn run(&self, interrupt: &AtomicBool) -> std::result::Result<(State, Report), Stop> {
+        let (mut state, mut report) = (self.start.clone(), Report::default());
+        let mut run =
+            Run { mesh: &self.mesh, scheme: &self.scheme, settings: self.settings, observers: vec![], interrupt };
+        run.advance(&mut state, &mut report)?;
+        report.finish(&self.scheme, &state);
+        Ok((state, report))
+    }
+}
+
+/// What was measured of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// The case.
+    pub case: Case,
+    /// min_e h_e of the mesh, m.
+    pub h: f64,
+    /// Number of cells.
+    pub cells: usize,
+    /// Grid unknowns, 6 (N+1)^2 cells.
+    pub dofs: usize,
+    /// Steps of the run.
+    pub steps: usize,
+    /// Smallest and largest step, s.
+    pub dt: [f64; 2],
+    /// CPU seconds of the steps; the fastest of the repeats.
+    pub cpu: f64,
+    /// Seconds on the clock of that run.
+    pub wall: f64,
+    /// MiB of operators, state and work.
+    pub memory: f64,
+    /// The largest resident memory of the program so far, MiB.
+    pub peak: f64,
+    /// Errors at the end; none of a case that did not get there.
+    pub errors: Option<Errors>,
+    /// `done`, or why it did not get there.
+    pub status: String,
+    /// What earlier records had let expect.
+    pub predicted: Option<Prediction>,
+}
+
+impl Record {
+    /// The standard error of a run that went well.
+    pub fn error(&self) -> Option<f64> {
+        self.errors.map(|errors| errors.standard)
+    }
+
+    fn failed(case: Case, status: String) -> Self {
+        let nothing = Report::default();
+        Self::new(case, [0, 0], &nothing, None, status)
+    }
+
+    fn new(case: Case, sizes: [usize; 2], report: &Report, errors: Option<Errors>, status: String) -> Self {
+        Self {
+            case,
+            h: 0.0,
+            cells: sizes[0],
+            dofs: sizes[1],
+            steps: report.steps,
+            dt: report.dt,
+            cpu: report.cpu,
+            wall: report.wall,
+            memory: report.bytes as f64 / (1024.0 * 1024.0),
+            peak: crate::run::peak_memory_mib(),
+            errors,
+            status,
+            predicted: None,
+        }
+    }
+}
+
+/// Builds, runs and compares.
+///
+/// # Errors
+/// An interrupt.
+pub(super) fn measure(
+    scene: &Scene,
+    case: Case,
+    reference: &Reference,
+    predicted: Option<Prediction>,
+    repeat: usize,
+    interrupt: &AtomicBool,
+) -> Result<Record> {
+    let built = match case.build(scene) {
+        Ok(built) => built,
+        Err(why) => return Ok(Record { predicted, ..Record::failed(case, why.to_string()) }),
+    };
+    let sizes = [built.mesh.cells.len(), dofs(&built.scheme)];
+    let mut best: Option<(State, Report)> = None;
+    for _ in 0..repeat.max(1) {
+        match built.run(interrupt) {
+            Ok((state, report)) if best.as_ref().is_none_or(|(_, old)| report.cpu < old.cpu) => {
+                best = Some((state, report));
+            }
+            Ok(_) => {}
+            Err(Stop::Interrupted) => return Err(Error::Interrupted("in a study; its table is kept".into())),
+            Err(Stop::Output(why)) => return Err(why),
+            Err(Stop::Unstable(loss)) => {
+                let status = format!("unstable: {}", loss.kind);
+                return Ok(Record { predicted, ..Record::new(case, sizes, &Report::default(), None, status) });
+            }
+        }
+        if best.as_ref().is_some_and(|(_, report)| report.cpu > SHORT) {
+            break;
+        }
+    }
+    let Some((state, report)) = best else { return Ok(Record::failed(case, "no run".into())) };
+    let errors = reference.errors(&built, &state);
+    let record = Record::new(case, sizes, &report, Some(errors), "done".into());
+    Ok(Record { predicted, h: smallest_h(&built.mesh), ..record })
+}
+
+/// min_e h_e, m.
+pub fn smallest_h(mesh: &Mesh) -> f64 {
+    (0..mesh.cells.len()).map(|cell| map::h_e(&mesh.corners(cell))).fold(f64::INFINITY, f64::min)
+}

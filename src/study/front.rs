@@ -1,0 +1,56 @@
+//! The cheapest settings: the Pareto front of error and seconds, and the answer in words.
+
+use super::case::{Record, Series};
+
+/// Indices of the records that no other beats in both error and CPU seconds, by falling error.
+pub fn front(records: &[Record]) -> Vec<usize> {
+    let mut order: Vec<(usize, f64)> =
+        records.iter().enumerate().filter_map(|(k, r)| Some((k, r.error().filter(|e| e.is_finite())?))).collect();
+    order.sort_by(|a, b| records[a.0].cpu.total_cmp(&records[b.0].cpu).then(a.1.total_cmp(&b.1)));
+    let mut best = f64::INFINITY;
+    order.retain(|&(_, error)| {
+        let better = error < best;
+        best = best.min(error);
+        better
+    });
+    order.into_iter().map(|(k, _)| k).collect()
+}
+
+/// The cheapest record for an error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// The error asked for, a power of ten.
+    pub error: f64,
+    /// Index of the record.
+    pub record: usize,
+}
+
+/// For each power of ten between the largest and the smallest error of the front, the cheapest record that has it.
+pub fn answers(records: &[Record]) -> Vec<Answer> {
+    let front = front(records);
+    let errors: Vec<f64> = front.iter().filter_map(|&k| records[k].error()).collect();
+    let (Some(largest), Some(smallest)) = (errors.first(), errors.last()) else { return vec![] };
+    let powers = (smallest.log10().ceil() as i32..=largest.log10().floor() as i32).rev();
+    let cheapest = |power: i32| {
+        let error = 10_f64.powi(power);
+        // The front goes from cheap to dear.
+        let record = *front.iter().find(|&&k| records[k].error().is_some_and(|e| e <= error))?;
+        Some(Answer { error, record })
+    };
+    powers.filter_map(cheapest).collect()
+}
+
+/// CPU seconds of a series for an error, by a straight line in logarithms between the two records around it; none where
+/// it was not reached. An error above that of the coarsest mesh costs what that mesh costs.
+pub fn cost(records: &[Record], series: &Series, error: f64) -> Option<f64> {
+    let mut points: Vec<(f64, f64)> =
+        records.iter().filter(|r| r.case.series == *series).filter_map(|r| Some((r.error()?, r.cpu))).collect();
+    points.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let first = *points.first()?;
+    if first.0 <= error {
+        return Some(first.1);
+    }
+    let pair = points.windows(2).find(|pair| pair[1].0 <= error)?;
+    let share = (pair[0].0 / error).ln() / (pair[0].0 / pair[1].0).ln();
+    Some((pair[0].1.ln() + share * (pair[1].1 / pair[0].1).ln()).exp())
+}

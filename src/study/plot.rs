@@ -1,0 +1,188 @@
+//! Work-precision plots, in logarithms, one line a series: as SVG and as PNG.
+
+use super::case::{Record, Series};
+use crate::error::{Error, Result};
+use crate::io::pending::Pending;
+use crate::scene::Method;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::path::Path;
+use std::sync::Once;
+
+/// The abscissa.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    /// CPU seconds.
+    Seconds,
+    /// Grid unknowns.
+    Dofs,
+}
+
+const SIZE: (u32, u32) = (900, 620);
+const FONT: &str = "sans-serif";
+/// By degree from 0; told apart by the colour-blind, too (Okabe, Ito).
+const COLOURS: [RGBColor; 7] = [
+    RGBColor(120, 120, 120),
+    RGBColor(230, 159, 0),
+    RGBColor(0, 114, 178),
+    RGBColor(0, 158, 115),
+    RGBColor(213, 94, 0),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+];
+
+impl Axis {
+    fn of(self, record: &Record) -> f64 {
+        match self {
+            Self::Seconds => record.cpu.max(1e-6),
+            Self::Dofs => record.dofs as f64,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Seconds => "CPU seconds",
+            Self::Dofs => "degrees of freedom",
+        }
+    }
+}
+
+/// Draws error over `axis` into `path`, whose ending (`svg`, `png`) says how.
+///
+/// # Errors
+/// Where there is nothing to draw, or the file cannot be written.
+pub fn plot(records: &[Record], axis: Axis, title: &str, path: &Path) -> Result<()> {
+    fonts();
+    let pending = Pending::new(path)?;
+    let failed = |why: String| Error::output(path, why);
+    if path.extension().is_some_and(|ending| ending == "svg") {
+        let mut text = String::new();
+        draw(SVGBackend::with_string(&mut text, SIZE).into_drawing_area(), records, axis, title).map_err(failed)?;
+        std::fs::write(pending.path(), text).map_err(|why| Error::output(path, why))?;
+    } else {
+        // The bitmap backend tells the format from the ending, which a pending file has not.
+        let mut pixels = vec![255; 3 * SIZE.0 as usize * SIZE.1 as usize];
+        let area = BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area();
+        draw(area, records, axis, title).map_err(failed)?;
+        let file = std::fs::File::create(pending.path()).map_err(|why| Error::output(path, why))?;
+        write_png(file, &pixels).map_err(|why| Error::output(path, why))?;
+    }
+    pending.commit()
+}
+
+/// The font comes with the program: a machine without a desktop has none.
+fn fonts() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        // The one possible fault, a file that is no font, is excluded by the test that draws with it.
+        let _ = plotters::style::register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
+    });
+}
+
+fn write_png(file: std::fs::File, pixels: &[u8]) -> std::result::Result<(), png::EncodingError> {
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), SIZE.0, SIZE.1);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.write_header()?.write_image_data(pixels)
+}
+
+/// Records of a series that can stand in a plot, from coarse to fine.
+fn points(records: &[Record], series: &Series, axis: Axis) -> Vec<(f64, f64)> {
+    let mut of: Vec<&Record> = records.iter().filter(|r| r.case.series == *series).collect();
+    of.sort_by(|a, b| a.case.refinement.total_cmp(&b.case.refinement));
+    let point = |r: &Record| Some((axis.of(r), r.error().filter(|e| e.is_finite() && *e > 0.0)?));
+    of.into_iter().filter_map(point).collect()
+}
+
+fn draw<B: DrawingBackend>(
+    area: DrawingArea<B, Shift>,
+    records: &[Record],
+    axis: Axis,
+    title: &str,
+) -> std::result::Result<(), String> {
+    let text = |why: DrawingAreaErrorKind<B::ErrorType>| why.to_string();
+    let mut lines: Vec<(&Series, Vec<(f64, f64)>)> = Vec::new();
+    for record in records {
+        if lines.iter().all(|(series, _)| **series != record.case.series) {
+            lines.push((&record.case.series, points(records, &record.case.series, axis)));
+        }
+    }
+    lines.retain(|(_, points)| !points.is_empty());
+    if lines.is_empty() {
+        return Err("no run went well: there is nothing to draw".to_owned());
+    }
+    let all = || lines.iter().flat_map(|(_, points)| points);
+    let (x, y) = (decades(all().map(|p| p.0)), decades(all().map(|p| p.1)));
+    area.fill(&WHITE).map_err(text)?;
+    let mut chart = ChartBuilder::on(&area)
+        .caption(title, (FONT, 20))
+        .margin(12)
+        .margin_right(210)
+        .x_label_area_size(48)
+        .y_label_area_size(70)
+        .build_cartesian_2d((x.0..x.1).log_scale(), (y.0..y.1).log_scale())
+        .map_err(text)?;
+    chart
+        .configure_mesh()
+        .bold_line_style(RGBColor(205, 205, 205))
+        .light_line_style(RGBColor(240, 240, 240))
+        .x_desc(axis.name())
+        .y_desc("relative error (standard measure)")
+        .x_label_formatter(&|x| format!("{x:.0e}"))
+        .y_label_formatter(&|y| format!("{y:.0e}"))
+        .label_style((FONT, 15))
+        .axis_desc_style((FONT, 17))
+        .draw()
+        .map_err(text)?;
+    for (k, (series, points)) in lines.iter().enumerate() {
+        let colour = COLOURS[series.degree.min(COLOURS.len() - 1)];
+        let plain = ShapeStyle::from(colour).stroke_width(2);
+        match series.method {
+            Method::AderDgmpm => chart.draw_series(LineSeries::new(points.clone(), plain)),
+            Method::AderDgfem => chart.draw_series(DashedLineSeries::new(points.clone(), 7, 5, plain).into_iter()),
+            Method::RkDgfem => chart.draw_series(DashedLineSeries::new(points.clone(), 2, 4, plain).into_iter()),
+        }
+        .map_err(text)?;
+        let (full, points) = (colour.filled(), points.iter().copied());
+        // A square for material points, a triangle for ADER-DGFEM, a circle for RK-DGFEM; as in the legend.
+        match series.method {
+            Method::AderDgmpm => chart.draw_series(points.map(|at| EmptyElement::at(at) + square((0, 0), full))),
+            Method::AderDgfem => chart.draw_series(points.map(|at| TriangleMarker::new(at, 6, full))),
+            Method::RkDgfem => chart.draw_series(points.map(|at| Circle::new(at, 4, full))),
+        }
+        .map_err(text)?;
+        legend(&area, k, series, colour).map_err(text)?;
+    }
+    area.present().map_err(text)
+}
+
+/// A square of 9 x 9 pixels.
+fn square(at: (i32, i32), style: ShapeStyle) -> plotters::element::Rectangle<(i32, i32)> {
+    plotters::element::Rectangle::new([(at.0 - 4, at.1 - 4), (at.0 + 4, at.1 + 4)], style)
+}
+
+/// Line k of the legend, right of the chart.
+fn legend<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    k: usize,
+    series: &Series,
+    colour: RGBColor,
+) -> std::result::Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+    let (x, y) = (SIZE.0 as i32 - 205, 60 + 22 * k as i32);
+    let at = (x + 12, y);
+    let full = colour.filled();
+    match series.method {
+        Method::AderDgmpm => area.draw(&square(at, full))?,
+        Method::AderDgfem => area.draw(&TriangleMarker::new(at, 6, full))?,
+        Method::RkDgfem => area.draw(&Circle::new(at, 4, full))?,
+    }
+    let style = (FONT, 15).into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
+    area.draw(&Text::new(series.name(), (x + 26, y), style))
+}
+
+/// Whole decades around positive numbers.
+fn decades(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+    let (low, high) = (low.log10().floor(), high.log10().ceil());
+    (10_f64.powf(low), 10_f64.powf(if high > low { high } else { low + 1.0 }))
+}

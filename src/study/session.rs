@@ -1,0 +1,244 @@
+//! A study from its plan to its files.
+
+use super::case::{Case, Record, Series};
+use super::choice::{Aim, Choice, ranked};
+use super::front::{answers, front};
+use super::plot::{Axis, plot};
+use super::table::{csv, markdown};
+use super::words::{answer, line, percent, seconds, title};
+use super::{SHORT, Study};
+use crate::error::{Error, Result};
+use crate::io::pending::write_text;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Settings that are tried for an aim before the study gives up.
+const TRIES: usize = 4;
+/// CPU seconds that one run of the calibration may take.
+const CALIBRATION: f64 = 2.0;
+/// The best settings of which each gets a mesh near by before one is chosen.
+const RIVALS: usize = 3;
+/// Meshes that may be measured on the way to the chosen one.
+const BETWEEN: usize = 16;
+
+/// What is to be studied.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Methods, degrees, layouts.
+    pub series: Vec<Series>,
+    /// Cells per direction over those of the scene, rising.
+    pub refinements: Vec<f64>,
+    /// What is asked for; none: everything is measured.
+    pub aim: Option<Aim>,
+}
+
+/// A study under way.
+pub struct Session<'a> {
+    /// What was measured.
+    pub study: Study<'a>,
+    /// What is to be measured.
+    pub plan: Plan,
+    /// The folder of its files.
+    pub out: PathBuf,
+    /// Problem, reference and machine, for the head of the table.
+    pub head: Vec<String>,
+    /// Takes a line for the user.
+    pub say: &'a dyn Fn(&str),
+}
+
+impl Session<'_> {
+    /// Measures what the plan asks for, and writes `study.csv` (after each run), `study.json`, `table.md` and the plots.
+    ///
+    /// # Errors
+    /// An aim that no setting can meet; an interrupt; files that cannot be written.
+    pub fn run(mut self) -> Result<()> {
+        let tries = match self.plan.aim {
+            None => self.all().map(|()| vec![])?,
+            Some(aim) => self.aim(aim)?,
+        };
+        self.finish(tries)
+    }
+
+    fn say(&self, text: impl AsRef<str>) {
+        (self.say)(text.as_ref());
+    }
+
+    /// Measures a case, prints its row and keeps the table so far.
+    fn measure(&mut self, case: Case) -> Result<Record> {
+        let record = self.study.measure(case)?.clone();
+        self.say(line(&record));
+        write_text(&self.out.join("study.csv"), &csv(&self.study.records, &self.head))?;
+        Ok(record)
+    }
+
+    /// Every series on every mesh, from coarse to fine.
+    fn all(&mut self) -> Result<()> {
+        let start = Instant::now();
+        let mut predicted = None;
+        self.say(title());
+        for (level, refinement) in self.plan.refinements.clone().into_iter().enumerate() {
+            if level == 1 {
+                let spent = start.elapsed().as_secs_f64();
+                let whole = spent + self.rest(level, spent);
+                self.say(format!("  the whole study will take about {}", seconds(whole)));
+                predicted = Some(whole);
+            }
+            for series in self.plan.series.clone() {
+                self.measure(Case { series, refinement })?;
+            }
+        }
+        if let Some(predicted) = predicted {
+            let took = seconds(start.elapsed().as_secs_f64());
+            self.say(format!("  the whole study took {took}, predicted {}", seconds(predicted)));
+        }
+        Ok(())
+    }
+
+    /// Seconds of the levels from `level` on, by the models of the series; matrices and errors go with the cells.
+    fn rest(&self, level: usize, spent: f64) -> f64 {
+        let times = |cpu: f64| if cpu < SHORT { cpu * self.study.repeat as f64 } else { cpu };
+        let beside = (spent - self.study.records.iter().map(|r| times(r.cpu)).sum::<f64>()).max(0.0);
+        let first = self.plan.refinements[0];
+        let of = |refinement: f64| -> f64 {
+            let case = |series: &Series| Case { series: series.clone(), refinement };
+            let cpu = |series| self.study.model(series).map_or(0.0, |m| m.at(self.study.size(&case(series))).cpu);
+            self.plan.series.iter().map(|s| times(cpu(s))).sum::<f64>() + beside * (refinement / first).powi(2)
+        };
+        self.plan.refinements[level..].iter().map(|r| of(*r)).sum()
+    }
+
+    /// Calibrates, then chooses, predicts and runs until the aim is met.
+    fn aim(&mut self, aim: Aim) -> Result<Vec<Value>> {
+        self.say(match aim {
+            Aim::Error(error) => format!("the cheapest setting with an error of {}; first, short runs", percent(error)),
+            Aim::Seconds(s) => format!("the most accurate setting that takes {s} CPU seconds; first, short runs"),
+        });
+        self.say(title());
+        self.calibrate(aim)?;
+        let mut tries = Vec::new();
+        while tries.len() < TRIES {
+            let choice = self.choice(aim)?;
+            let (record, found) = self.attempt(&choice)?;
+            let met = aim.is_met(record.cpu, found);
+            tries.push(json!({
+                "setting": record.case.series.name(),
+                "refinement": record.case.refinement,
+                "sets": record.case.sets(self.study.scene),
+                "predicted": choice.prediction,
+                "found": {"cpu": record.cpu, "error": found},
+                "met": met,
+            }));
+            if met {
+                let sets = record.case.sets(self.study.scene);
+                let sets: Vec<String> = sets.iter().map(|set| format!("--set '{set}'")).collect();
+                self.say(format!("run it by: dgmpm run {} {}", self.study.scene.path().display(), sets.join(" ")));
+                return Ok(tries);
+            }
+            self.say("not met: once more with what this run has shown");
+        }
+        self.say(format!("the aim was not met in {TRIES} tries"));
+        Ok(tries)
+    }
+
+    /// The meshes of the plan for each series, as long as they are cheap and the aim lies beyond.
+    fn calibrate(&mut self, aim: Aim) -> Result<()> {
+        let budget = match aim {
+            Aim::Error(_) => CALIBRATION,
+            Aim::Seconds(s) => CALIBRATION.min(0.3 * s),
+        };
+        for series in self.plan.series.clone() {
+            for refinement in self.plan.refinements.clone() {
+                let case = Case { series: series.clone(), refinement };
+                let model = self.study.model(&series);
+                let dear = model.is_some_and(|m| m.at(self.study.size(&case)).cpu > budget);
+                let beyond = |r: &Record| matches!((aim, r.error()), (Aim::Error(aim), Some(e)) if e < aim);
+                if dear || self.study.records.iter().any(|r| r.case.series == series && beyond(r)) {
+                    break;
+                }
+                self.measure(case)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The best setting, once the best few were measured near by: a model is not believed far from what it rests on.
+    fn choice(&mut self, aim: Aim) -> Result<Choice> {
+        for _ in 0..BETWEEN {
+            let ranked = ranked(&self.study, &self.plan.series, aim);
+            let far = ranked.iter().take(RIVALS).find(|choice| !choice.calibrated).cloned();
+            let Some(far) = far else { break };
+            let reach = self.study.model(&far.case.series).map_or(1.0, |model| model.reach());
+            let between = (reach * far.case.refinement).sqrt().min(2.0 * reach);
+            let refinement = if self.study.scene.mesh_path().is_some() { between.ceil() } else { between };
+            self.measure(Case { refinement, ..far.case })?;
+        }
+        ranked(&self.study, &self.plan.series, aim)
+            .into_iter()
+            .next()
+            .ok_or_else(|| Error::input("no setting of the study can meet this", "allow more, or other --degrees"))
+    }
+
+    /// Runs a choice, prediction beside result.
+    fn attempt(&mut self, choice: &Choice) -> Result<(Record, f64)> {
+        let (cpu, error) = (choice.prediction.cpu, choice.prediction.error);
+        let name = format!("{} with refinement {:.4}", choice.case.series.name(), choice.case.refinement);
+        self.say(format!("choice: {name}: predicted {}, error {error:.2e}", seconds(cpu)));
+        let record = self.measure(choice.case.clone())?;
+        let Some(found) = record.error() else {
+            let what = format!("the chosen setting does not run: {}", record.status);
+            return Err(Error::input(what, "give other --degrees"));
+        };
+        let took = format!("{} (predicted {})", seconds(record.cpu), seconds(cpu));
+        self.say(format!("result: {took}, error {found:.2e} (predicted {error:.2e})"));
+        Ok((record, found))
+    }
+
+    /// Front, answers, plots and `study.json`.
+    fn finish(self, tries: Vec<Value>) -> Result<()> {
+        let records = &self.study.records;
+        let answers = answers(records);
+        self.say("cheapest by error:");
+        answers.iter().for_each(|a| self.say(answer(a.error, &records[a.record])));
+        let setting = |r: &Record| {
+            json!({
+                "setting": r.case.series.name(),
+                "refinement": r.case.refinement,
+                "cells": r.cells,
+                "cpu_seconds": r.cpu,
+                "error": r.error(),
+            })
+        };
+        let words = answers.iter().map(|a| json!({"for_error": a.error, "use": setting(&records[a.record])}));
+        let all = json!({
+            "title": self.study.scene.title,
+            "head": self.head,
+            "reference_error": self.study.reference.error(),
+            "answers": words.collect::<Vec<_>>(),
+            "front": front(records).into_iter().map(|k| setting(&records[k])).collect::<Vec<_>>(),
+            "tries": tries,
+        });
+        write_text(&self.out.join("study.json"), &format!("{all:#}\n"))?;
+        write_text(&self.out.join("table.md"), &markdown(records))?;
+        for (axis, name) in [(Axis::Seconds, "error_over_seconds"), (Axis::Dofs, "error_over_dofs")] {
+            for ending in ["svg", "png"] {
+                plot(records, axis, &self.study.scene.title, &self.out.join(format!("{name}.{ending}")))?;
+            }
+        }
+        self.doubt_reference(records);
+        self.say(format!("tables and plots in {}", self.out.display()));
+        Ok(())
+    }
+
+    /// A result whose error is not far above that of the reference says little.
+    fn doubt_reference(&self, records: &[Record]) {
+        let smallest = records.iter().filter_map(Record::error).fold(f64::INFINITY, f64::min);
+        let own = self.study.reference.error();
+        if own.is_none_or(|own| own > 0.3 * smallest) {
+            let own = own.map_or("not known".to_owned(), |own| format!("about {own:.1e}"));
+            let what =
+                format!("warning: the error of the reference itself is {own}, the smallest found is {smallest:.1e}");
+            self.say(format!("{what}: give a finer --reference DEGREE,REFINEMENT"));
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! What a study says on the terminal.
+
+use super::case::Record;
+
+/// The head of the rows of [`line`].
+pub fn title() -> String {
+    format!(
+        "  {:<28} {:>7} {:>8} {:>7} {:>10} {:>8} {:>10}   {}",
+        "setting", "cells", "dofs", "steps", "CPU s", "MiB", "error", "predicted CPU s, error"
+    )
+}
+
+/// A record as a row.
+pub fn line(r: &Record) -> String {
+    let name = format!("{} x{:.4}", r.case.series.name(), r.case.refinement);
+    let Some(error) = r.error() else { return format!("  {name:<28} {}", r.status) };
+    let predicted = r.predicted.map_or(String::new(), |p| format!("{:.3}, {:.2e}", p.cpu, p.error));
+    format!(
+        "  {name:<28} {:>7} {:>8} {:>7} {:>10.3} {:>8.1} {error:>10.2e}   {predicted}",
+        r.cells, r.dofs, r.steps, r.cpu, r.memory
+    )
+}
+
+/// `for an error of 1 % use rk-dgfem S3 on 60 cells: 180.2 ms (error 6.31e-3)`.
+pub fn answer(error: f64, record: &Record) -> String {
+    let (name, cells) = (record.case.series.name(), record.cells);
+    let found = record.error().unwrap_or(f64::NAN);
+    let error = percent(error);
+    format!("  for an error of {error:<8} use {name} on {cells} cells: {} (error {found:.2e})", seconds(record.cpu))
+}
+
+/// 1 %, 0.01 %; below that as a power of ten.
+pub fn percent(error: f64) -> String {
+    if error >= 0.9e-5 { format!("{} %", (error * 1e8).round() / 1e6) } else { format!("{error:.0e}") }
+}
+
+/// Seconds, as people say them.
+pub fn seconds(s: f64) -> String {
+    match s {
+        s if s < 1.0 => format!("{:.1} ms", 1e3 * s),
+        s if s < 120.0 => format!("{s:.1} s"),
+        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
