@@ -185,7 +185,7 @@ impl Record {
         self.errors.map(|errors| errors.standard)
     }
 
-    fn failed(case: Case, status: String) -> Self {
+    pub(super) fn failed(case: Case, status: String) -> Self {
         let nothing = Report::default();
         Self::new(case, [0, 0], &nothing, None, status)
     }

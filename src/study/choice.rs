@@ -64,7 +64,7 @@ pub fn ranked(study: &Study, series: &[Series], aim: Aim) -> Vec<Choice> {
 }
 
 fn candidate(study: &Study, series: &Series, aim: Aim) -> Option<Choice> {
-    let model = study.model(series)?;
+    let model = study.model(series).filter(|model| model.levels() > 1)?;
     let expect = |refinement: f64| {
         let case = Case { series: series.clone(), refinement };
         (model.at(study.size(&case)), case)

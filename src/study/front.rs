@@ -54,3 +54,48 @@ pub fn cost(records: &[Record], series: &Series, error: f64) -> Option<f64> {
     let share = (pair[0].0 / error).ln() / (pair[0].0 / pair[1].0).ln();
     Some((pair[0].1.ln() + share * (pair[1].1 / pair[0].1).ln()).exp())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::case::Case;
+
+    fn record(degree: usize, refinement: f64, cpu: f64, error: f64) -> Record {
+        let series = Series { method: crate::scene::Method::RkDgfem, degree, layout: None };
+        let errors = crate::exact::Errors { standard: error, ..Default::default() };
+        Record { cpu, errors: Some(errors), ..Record::failed(Case { series, refinement }, "done".into()) }
+    }
+
+    fn records() -> Vec<Record> {
+        vec![
+            record(1, 1.0, 1.0, 2e-1),
+            record(1, 2.0, 8.0, 5e-2),
+            record(3, 1.0, 4.0, 2e-2),
+            record(3, 2.0, 32.0, 2e-3),
+            Record::failed(Case { series: record(2, 1.0, 0.0, 0.0).case.series, refinement: 1.0 }, "unstable".into()),
+        ]
+    }
+
+    #[test]
+    fn no_record_of_the_front_is_beaten_and_every_other_is() {
+        assert_eq!(front(&records()), [0, 2, 3]);
+        assert_eq!(front(&[]), [] as [usize; 0]);
+    }
+
+    #[test]
+    fn answers_name_the_cheapest_record_that_has_the_error() {
+        let answers = answers(&records());
+        let found: Vec<(f64, usize)> = answers.iter().map(|a| ((1e9 * a.error).round() / 1e9, a.record)).collect();
+        assert_eq!(found, [(0.1, 2), (0.01, 3)]);
+    }
+
+    #[test]
+    fn costs_lie_on_a_line_in_logarithms() {
+        let all = records();
+        // Half-way between 2e-2 and 2e-3 in logarithms: sqrt(4 x 32).
+        let half_way = cost(&all, &all[2].case.series, 2e-2 / 10_f64.sqrt()).unwrap();
+        assert!((half_way / 128_f64.sqrt() - 1.0).abs() < 1e-12, "{half_way}");
+        assert_eq!(cost(&all, &all[0].case.series, 1e-3), None);
+        assert_eq!(cost(&all, &all[0].case.series, 0.5), Some(1.0));
+    }
+}

@@ -57,7 +57,9 @@ impl Study<'_> {
     /// # Errors
     /// None of the case itself: only an interrupt.
     pub fn measure(&mut self, case: Case) -> Result<&Record> {
-        let predicted = self.model(&case.series).map(|model| model.at(self.size(&case)));
+        // One mesh alone tells no rate.
+        let model = self.model(&case.series).filter(|model| model.levels() > 1);
+        let predicted = model.map(|model| model.at(self.size(&case)));
         let record = case::measure(self.scene, case, &self.reference, predicted, self.repeat, self.interrupt)?;
         self.records.push(record);
         // The one just pushed.

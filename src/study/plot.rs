@@ -139,8 +139,8 @@ fn draw<B: DrawingBackend>(
         let plain = ShapeStyle::from(colour).stroke_width(2);
         match series.method {
             Method::AderDgmpm => chart.draw_series(LineSeries::new(points.clone(), plain)),
-            Method::AderDgfem => chart.draw_series(DashedLineSeries::new(points.clone(), 7, 5, plain).into_iter()),
-            Method::RkDgfem => chart.draw_series(DashedLineSeries::new(points.clone(), 2, 4, plain).into_iter()),
+            Method::AderDgfem => chart.draw_series(DashedLineSeries::new(points.clone(), 7, 5, plain)),
+            Method::RkDgfem => chart.draw_series(DashedLineSeries::new(points.clone(), 2, 4, plain)),
         }
         .map_err(text)?;
         let (full, points) = (colour.filled(), points.iter().copied());

@@ -81,6 +81,11 @@ impl Model {
         self.finest().refinement
     }
 
+    /// Number of meshes that it rests on.
+    pub fn levels(&self) -> usize {
+        self.levels.len()
+    }
+
     /// The finest level, or the finer of the two around a refinement, and the rate there.
     fn near(&self, is_above: impl Fn(&Level) -> bool) -> (Level, f64) {
         match self.levels.iter().position(is_above) {
@@ -127,4 +132,63 @@ impl Model {
 /// The observed rate between two levels.
 fn rate(coarse: &Level, fine: &Level) -> f64 {
     (coarse.error / fine.error).ln() / (fine.refinement / coarse.refinement).ln()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::case::{Case, Series};
+
+    /// A record of a series with e = h^p and seconds = steps (1e-6 + 2e-5 blocks).
+    fn record(cells: usize, p: f64) -> Record {
+        let series = Series { method: crate::scene::Method::RkDgfem, degree: 3, layout: None };
+        let h = 1.0 / cells as f64;
+        let errors = crate::exact::Errors { standard: h.powf(p), ..Default::default() };
+        let (steps, blocks) = (10 * cells, (cells * cells).div_ceil(8));
+        Record {
+            h,
+            cells: cells * cells,
+            steps,
+            cpu: steps as f64 * (1e-6 + 2e-5 * blocks as f64),
+            errors: Some(errors),
+            ..Record::failed(Case { series, refinement: cells as f64 }, "done".into())
+        }
+    }
+
+    fn size(cells: usize) -> Size {
+        Size { refinement: cells as f64, h: 1.0 / cells as f64, blocks: (cells * cells).div_ceil(8) as f64 }
+    }
+
+    #[test]
+    fn data_of_the_model_are_continued_exactly() {
+        for p in [0.5, 2.0, 4.0] {
+            let records = [8, 16, 32].map(|cells| record(cells, p));
+            let model = Model::fit(3, records.iter()).unwrap();
+            let expected = record(64, p);
+            let found = model.at(size(64));
+            // Exact data: rounding.
+            assert!((found.error / expected.error().unwrap() - 1.0).abs() < 1e-9, "{p}: {found:?}");
+            assert!((found.cpu / expected.cpu - 1.0).abs() < 1e-6, "{p}: {found:?}");
+            for cells in [20.0_f64, 64.0] {
+                let needed = model.refinement_for(cells.powf(-p));
+                assert!((needed / cells - 1.0).abs() < 1e-9, "{p}: {needed}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_rate_that_rises_goes_on_to_the_order_and_no_further() {
+        // Rates 2, then 3.5: 3.5 + .75 would pass N + 1 = 4.
+        let records = [(8, 1e-2), (16, 2.5e-3), (32, 2.5e-3 / 3.5_f64.exp2())].map(|(cells, error)| Record {
+            errors: Some(crate::exact::Errors { standard: error, ..Default::default() }),
+            ..record(cells, 1.0)
+        });
+        let model = Model::fit(3, records.iter()).unwrap();
+        let ratio = records[2].error().unwrap() / model.at(size(64)).error;
+        assert!((ratio.log2() - 4.0).abs() < 1e-9, "{ratio}");
+        // At a shock the rate is 1/2 and stays there, whatever the order.
+        let shock = [8, 16].map(|cells| record(cells, 0.5));
+        let ratio = shock[1].error().unwrap() / Model::fit(3, shock.iter()).unwrap().at(size(32)).error;
+        assert!((ratio.log2() - 0.5).abs() < 1e-9, "{ratio}");
+    }
 }

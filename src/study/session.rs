@@ -148,12 +148,14 @@ impl Session<'_> {
             Aim::Seconds(s) => CALIBRATION.min(0.3 * s),
         };
         for series in self.plan.series.clone() {
-            for refinement in self.plan.refinements.clone() {
+            for (level, refinement) in self.plan.refinements.clone().into_iter().enumerate() {
                 let case = Case { series: series.clone(), refinement };
                 let model = self.study.model(&series);
-                let dear = model.is_some_and(|m| m.at(self.study.size(&case)).cpu > budget);
+                // Two meshes are the least that tells a rate.
+                let most = if level < 2 { 10.0 * budget } else { budget };
+                let dear = model.is_some_and(|m| m.at(self.study.size(&case)).cpu > most);
                 let beyond = |r: &Record| matches!((aim, r.error()), (Aim::Error(aim), Some(e)) if e < aim);
-                if dear || self.study.records.iter().any(|r| r.case.series == series && beyond(r)) {
+                if dear || level >= 2 && self.study.records.iter().any(|r| r.case.series == series && beyond(r)) {
                     break;
                 }
                 self.measure(case)?;
