@@ -22,7 +22,7 @@ pub struct Args {
     degrees: Vec<usize>,
     /// Cells per direction over those of the scene; whole numbers where its mesh is a file [default: 0.25,0.5,1, of a
     /// file 1,2]
-    #[arg(long, value_name = "R,..", value_delimiter = ',')]
+    #[arg(long, value_name = "R,..", value_delimiter = ',', allow_negative_numbers = true)]
     refine: Vec<f64>,
     /// Layouts of the points of ADER-DGMPM: paper, midpoints, gauss, jitter [default: that of the scene]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
@@ -32,10 +32,10 @@ pub struct Args {
     #[arg(long, value_name = "N,R", value_delimiter = ',', num_args = 1)]
     reference: Vec<f64>,
     /// Find and run the cheapest setting with this standard error, such as 1e-3
-    #[arg(long, value_name = "E", conflicts_with = "seconds")]
+    #[arg(long, value_name = "E", conflicts_with = "seconds", allow_negative_numbers = true)]
     error: Option<f64>,
     /// Find and run the most accurate setting that takes so many CPU seconds
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Runs of a case that takes less than half a second; the fastest counts
     #[arg(long, value_name = "N", default_value_t = 3)]

@@ -1,0 +1,153 @@
+//! `dgmpm study`: its files, its predictions of errors, its reference, its refusals. Times are not tested: machines are noisy.
+
+use assert_cmd::Command;
+use std::path::{Path, PathBuf};
+
+const MESHES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes");
+
+/// Runs a study of a scene into `out`; its standard output, or its error with the exit code.
+fn study(scene: &Path, out: &Path, options: &str) -> Result<String, (i32, String)> {
+    let mut command = Command::cargo_bin("dgmpm").unwrap();
+    command.arg("study").arg(scene).arg("--out").arg(out).args(["--repeat", "1"]).args(options.split_whitespace());
+    let output = command.output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    match output.status.code() {
+        Some(0) => Ok(text(&output.stdout)),
+        code => Err((code.unwrap_or(-1), text(&output.stderr))),
+    }
+}
+
+fn scene(name: &str) -> PathBuf {
+    Path::new(MESHES).join(name)
+}
+
+/// A column of `study.csv`, as text.
+fn column(out: &Path, name: &str) -> Vec<String> {
+    let text = std::fs::read_to_string(out.join("study.csv")).unwrap();
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    let k = lines.next().unwrap().split(',').position(|column| column == name).unwrap();
+    lines.map(|line| line.split(',').nth(k).unwrap().to_owned()).collect()
+}
+
+fn numbers(out: &Path, name: &str) -> Vec<f64> {
+    column(out, name).iter().map(|text| text.parse().unwrap()).collect()
+}
+
+#[test]
+fn a_study_writes_its_table_its_plots_and_the_answer_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = "--methods rk-dgfem,ader-dgmpm --degrees 1,2 --refine 0.25,0.5 --layouts midpoints,gauss";
+    let said = study(&scene("manufactured.toml"), folder.path(), options).unwrap();
+    assert!(said.contains("for an error of") && said.contains("the exact solution"), "{said}");
+    // RK at two degrees, ADER-DGMPM at two degrees and two layouts, on two meshes.
+    let (methods, error) = (column(folder.path(), "method"), numbers(folder.path(), "error"));
+    assert_eq!(methods.len(), 12);
+    for series in 0..6 {
+        assert!(error[series + 6] < error[series], "{error:?}");
+    }
+    for (steps, dofs) in numbers(folder.path(), "steps").into_iter().zip(numbers(folder.path(), "dofs")) {
+        assert!(steps > 0.0 && dofs > 0.0);
+    }
+    assert!(numbers(folder.path(), "cpu_seconds").iter().all(|s| *s > 0.0));
+    assert!(column(folder.path(), "status").iter().all(|status| status == "\"done\""));
+    let text = std::fs::read_to_string(folder.path().join("study.csv")).unwrap();
+    assert!(text.lines().any(|line| line.starts_with("# machine: dgmpm")), "{text}");
+    for name in ["error_over_seconds", "error_over_dofs"] {
+        let svg = std::fs::read_to_string(folder.path().join(format!("{name}.svg"))).unwrap();
+        assert!(svg.starts_with("<svg") && svg.contains("rk-dgfem S2") && svg.contains("ader-dgmpm S1 gauss"));
+        let png = std::fs::read(folder.path().join(format!("{name}.png"))).unwrap();
+        assert!(png.starts_with(b"\x89PNG\r\n\x1a\n"));
+    }
+    let all: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.path().join("study.json")).unwrap()).unwrap();
+    assert!(!all["answers"].as_array().unwrap().is_empty() && !all["front"].as_array().unwrap().is_empty());
+    let table = std::fs::read_to_string(folder.path().join("table.md")).unwrap();
+    assert!(table.contains("| rk-dgfem S2 |") && table.contains("**"), "{table}");
+}
+
+#[test]
+fn a_setting_chosen_for_an_error_has_it_within_a_factor_of_two_of_the_prediction() {
+    let folder = tempfile::tempdir().unwrap();
+    study(&scene("manufactured.toml"), folder.path(), "--degrees 2,3 --refine 0.125,0.25,0.5 --error 1e-3").unwrap();
+    let all: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.path().join("study.json")).unwrap()).unwrap();
+    let tries = all["tries"].as_array().unwrap();
+    let last = tries.last().unwrap();
+    assert!(last["met"].as_bool().unwrap() && last["found"]["error"].as_f64().unwrap() <= 1e-3, "{last}");
+    for one in tries {
+        let ratio = one["found"]["error"].as_f64().unwrap() / one["predicted"]["error"].as_f64().unwrap();
+        // The issue's figure.
+        assert!((0.5..2.0).contains(&ratio), "{one}");
+    }
+}
+
+/// The smooth box on 8 x 8 cells: no exact solution.
+fn smooth_box(folder: &Path) -> PathBuf {
+    let walls = ["left", "right", "bottom", "top"].map(|g| format!("[[boundary]]\ngroup = \"{g}\"\nkind = \"wall\"\n"));
+    let text = format!(
+        "[mesh]\nrectangle = {{ size = [1.0, 1.0], cells = [8, 8] }}\n\
+         [[material]]\nlaw = \"neo-hookean\"\nyoung = 2e11\npoisson = 0.3\ndensity = 7800.0\n\
+         [initial]\nvelocity = [\"300*sin(pi*x)*cos(pi*y)\", \"-150*cos(pi*x)*sin(pi*y)\"]\n\
+         {}[scheme]\nmethod = \"rk-dgfem\"\ndegree = 2\n[time]\nend = 1.5e-4\n",
+        walls.join("")
+    );
+    let path = folder.join("box.toml");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn without_an_exact_solution_a_finer_run_stands_in_and_knows_its_own_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = smooth_box(folder.path());
+    let json = |options: &str, out: &str| -> serde_json::Value {
+        let out = folder.path().join(out);
+        study(&scene, &out, options).unwrap();
+        serde_json::from_str(&std::fs::read_to_string(out.join("study.json")).unwrap()).unwrap()
+    };
+    let base = "--methods rk-dgfem --degrees 2 --refine 0.5,1";
+    // The reference S2 on 8 x 8 is the finest run of the study itself: against S5 its error is known.
+    let coarse = json(&format!("{base} --reference 2,1"), "coarse");
+    let fine = json(&format!("{base} --reference 5,1"), "fine");
+    let estimated = coarse["reference_error"].as_f64().unwrap();
+    let error = numbers(&folder.path().join("fine"), "error")[1];
+    // Richardson on 2 x 2, 4 x 4 and 8 x 8 cells, of which the coarsest is before the asymptotic range.
+    assert!((0.4..2.5).contains(&(estimated / error)), "{estimated:e} {error:e}");
+    // Three degrees more on the same mesh: below a thousandth.
+    assert!(fine["reference_error"].as_f64().unwrap() < 1e-3 * error);
+    // Against itself a run has no error: the two solutions are compared at the same points.
+    assert!(numbers(&folder.path().join("coarse"), "error")[1] < 1e-13);
+}
+
+#[test]
+fn a_mesh_file_is_refined_by_cutting_its_cells() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = "--methods ader-dgmpm --degrees 1 --refine 1,2 --set output=[] --set time.end=2e-5 --reference 2,2";
+    study(&scene("plate_hole.toml"), folder.path(), options).unwrap();
+    let cells = numbers(folder.path(), "cells");
+    assert_eq!(cells[1], 4.0 * cells[0]);
+    let error = numbers(folder.path(), "error");
+    assert!(error[1] < error[0], "{error:?}");
+}
+
+#[test]
+fn bad_options_are_refused_and_results_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene("manufactured.toml");
+    for (options, word) in [
+        ("--methods rk-dgfm", "rk-dgfem"),
+        ("--layouts midpoint --methods ader-dgmpm", "midpoints"),
+        ("--refine 0", "above 0"),
+        ("--reference 9,1", "DEGREE,REFINEMENT"),
+        ("--error -1", "above 0"),
+        ("--degrees 8", "6"),
+    ] {
+        let (code, message) = study(&scene, folder.path(), options).unwrap_err();
+        assert!(code == 2 && message.contains(word), "{options}: {code} {message}");
+    }
+    assert!(!folder.path().join("study.csv").exists());
+    std::fs::write(folder.path().join("study.csv"), "mine").unwrap();
+    let (code, message) = study(&scene, folder.path(), "--degrees 1").unwrap_err();
+    assert!(code == 2 && message.contains("--force"), "{message}");
+    assert_eq!(std::fs::read_to_string(folder.path().join("study.csv")).unwrap(), "mine");
+}
