@@ -42,7 +42,7 @@ impl Grid {
 
 /// Moves in units of h of the cells x cells different nodes of the periodic square.
 fn trapezoids(cells: usize) -> Vec<[f64; 2]> {
-    let up = |i: usize, j: usize| if j % 2 == 0 { 0.0 } else { 0.3 * [1.0, -1.0][i % 2] };
+    let up = |i: usize, j: usize| 0.3 * [[0.0, 0.0], [1.0, -1.0]][j % 2][i % 2];
     (0..cells * cells).map(|k| [0.0, up(k % cells, k / cells)]).collect()
 }
 

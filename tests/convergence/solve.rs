@@ -120,6 +120,11 @@ pub fn error(problem: &Problem, mesh: &Mesh, kind: Kind, degree: usize, time_deg
             .map_or(lost, |state| errors(problem.exact.as_ref(), mesh, &scheme, &state, &vec![0; mesh.cells.len()]));
         (found, start.elapsed().as_secs_f64())
     };
-    // Meshes of some hundred cells: threads go to rows of the table instead, and the time is the row's own.
-    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(solve)
+    alone(solve)
+}
+
+/// Runs `body` on one thread: threads go to rows of the table instead, as the meshes have some hundred cells only, and
+/// the CPU time of a row is its own.
+pub fn alone<R: Send>(body: impl FnOnce() -> R + Send) -> R {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(body)
 }

@@ -2,7 +2,7 @@
 
 use crate::meshes::Grid;
 use crate::problem::Problem;
-use crate::solve::{Kind, MIDPOINTS, advanced, scheme};
+use crate::solve::{Kind, MIDPOINTS, advanced, alone, scheme};
 use crate::table::{Row, hold};
 use dgmpm::boundary::Wall;
 use dgmpm::exact::{Exact, SimpleWave};
@@ -16,20 +16,18 @@ fn steel(end: f64, exact: impl FnOnce(&Law) -> Arc<dyn Exact>) -> Problem {
     Problem { exact: exact(&law), law, periodic: vec![], end, safety: 0.9, alpha: Some(3.0) }
 }
 
+/// Half way to the steep wave of t = 2.5e-4 s. RK needs finer meshes: on the coarse ones its error is mostly that of the
+/// way (4, 2.5 times that of interpolation for S1, S2), which falls faster than N + 1 in 1D, where the flux is upwind:
+/// 2.41, 3.45 on the meshes of the others, 2.22, 3.13 on the next. ADER, with larger errors: 2.05, 3.16.
 #[test]
 fn the_simple_wave_is_met_at_its_order_by_all_methods() {
-    let problem = steel(2.5e-4, |law| Arc::new(SimpleWave::new(law.clone(), 0.1, 0.75, 0.12)));
+    let problem = steel(1.25e-4, |law| Arc::new(SimpleWave::new(law.clone(), 0.1, 0.75, 0.12)));
     let mut rows = Vec::new();
-    for (degree, cells, highest) in [(1, [240, 480], 2.5), (2, [120, 240], 3.6), (3, [120, 240], 4.8)] {
-        for kind in [MIDPOINTS, Kind::Fem, Kind::Rk] {
+    for (degree, ader, rk) in [(1, [160, 320], [320, 640]), (2, [80, 160], [160, 320]), (3, [60, 120], [60, 120])] {
+        for (kind, cells) in [(MIDPOINTS, ader), (Kind::Fem, ader), (Kind::Rk, rk)] {
             let row = Row::new(Grid::Strip, kind, degree, &cells);
-            let mut row = Row { name: "simple wave".into(), problem: problem.clone(), ..row };
-            if kind == Kind::Rk {
-                // Above N + 1: measured 2.24, 3.35, 4.57, and 2.36, 3.79, 4.43 from there to the next mesh. Of the steep
-                // wave RK has mostly the error of its way, whose order is up to 2N + 1 where the flux is upwind in 1D.
-                row.rate[1] = highest;
-            }
-            rows.push(row);
+            let name = "simple wave".into();
+            rows.push(Row { name, problem: problem.clone(), measure: |errors| errors.standard, ..row });
         }
     }
     hold(&rows);
@@ -56,7 +54,7 @@ fn the_smooth_box_between_walls_has_the_norms_of_the_reference() {
     for kind in [MIDPOINTS, Kind::Fem, Kind::Rk] {
         let mut scheme = scheme(&problem, &mesh, kind, 3, 3);
         scheme.boundaries[1] = Box::new(Wall { speed: None });
-        let state = advanced(&problem, &mesh, &scheme).expect("the box is smooth: no run loses stability");
+        let state = alone(|| advanced(&problem, &mesh, &scheme)).expect("the box is smooth: no run loses stability");
         let norms = norms(&scheme, &state, &[0; 256]);
         for (name, expected) in
             [("velocity_1", 82.93803266471), ("piola_11", 2166808838.231), ("cauchy_stress_11", 2178339518.219)]
