@@ -19,8 +19,8 @@ use problem::{Problem, manufactured};
 use solve::{GAUSS, JITTER, KINDS, Kind, MIDPOINTS, MORE, PAPER, alone, scheme, start};
 use table::{Row, hold};
 
-/// Cells per direction for S1 to S5 on squares, in the asymptotic range. (At t = .1 S3 swings: 3.65, 4.31 from 4 to 8 to
-/// 16 cells; at t = .25 it is at 4.08 from 6 to 12 and from 8 to 16.)
+/// Cells per direction for S1 to S5 on squares, in the asymptotic range. (At t = .1 S3 swings: 3.65, 4.31 from 4 to 8
+/// to 16 cells; at t = .25 it is at 4.08 from 6 to 12 and from 8 to 16.)
 const SQUARES: [&[usize]; 5] = [&[16, 32], &[8, 16], &[6, 12], &[6, 12], &[5, 10]];
 
 /// The same for distorted meshes, S1 to S4.
@@ -64,8 +64,8 @@ fn the_default_setting_has_the_errors_of_the_designs_prototype() {
 }
 
 /// The mapped Q_N of a bilinear cell holds all polynomials of degree N in X, and mass and stiffness are exact: the
-/// order is that of squares. Measured on trapezoids S1 1.99 to 2.00, S2 2.95 to 2.99, S3 3.84 to 4.06, S4 5.00 to 5.19; on
-/// random meshes, where neighbouring levels scatter, 1.94 to 1.96, 2.90 to 2.93, 3.94 to 4.20, 4.81 to 5.21.
+/// order is that of squares. Measured on trapezoids S1 1.99 to 2.00, S2 2.95 to 2.99, S3 3.84 to 4.06, S4 5.00 to
+/// 5.19; on random meshes, where neighbouring levels scatter, 1.94 to 1.96, 2.90 to 2.93, 3.94 to 4.20, 4.81 to 5.21.
 #[test]
 fn distorted_meshes_keep_the_order_of_every_method_and_layout() {
     let mut rows = Vec::new();

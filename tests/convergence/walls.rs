@@ -17,8 +17,8 @@ fn steel(end: f64, exact: impl FnOnce(&Law) -> Arc<dyn Exact>) -> Problem {
 }
 
 /// Half way to the steep wave of t = 2.5e-4 s. RK needs finer meshes: on the coarse ones its error is mostly that of
-/// the way (4, 2.5 times that of interpolation for S1, S2), which falls faster than N + 1 in 1D, where the flux is upwind:
-/// 2.41, 3.45 on the meshes of the others, 2.22, 3.13 on the next. ADER, with larger errors: 2.05, 3.16.
+/// the way (3.7, 2.5 times that of interpolation for S1, S2), which falls faster than N + 1 in 1D, where the flux is
+/// upwind: 2.41, 3.45 on the meshes of the others, 2.22, 3.13 on the next. ADER, with larger errors: 2.05, 3.16.
 #[test]
 fn the_simple_wave_is_met_at_its_order_by_all_methods() {
     let problem = steel(1.25e-4, |law| Arc::new(SimpleWave::new(law.clone(), 0.1, 0.75, 0.12)));
