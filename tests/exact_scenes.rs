@@ -7,7 +7,7 @@ use runs::run;
 #[test]
 fn scenes_with_an_exact_solution_report_small_errors() {
     for (scene, sets, largest) in [
-        // Twice what these coarse meshes give (8.0e-3, 5.1e-3, 2.1e-4 at worst): the orders are those of tests/convergence.rs.
+        // Twice what these coarse meshes give (8.0e-3, 5.1e-3, 2.1e-4 at worst): the orders are those of tests/convergence.
         ("simple_wave.toml", &["mesh.rectangle.cells=[60, 1]", "scheme.degree=3"][..], 1.6e-2),
         ("manufactured.toml", &["mesh.rectangle.cells=[8, 8]"], 1e-2),
         ("linear_bar.toml", &["mesh.rectangle.cells=[60, 1]", "scheme.degree=3"], 4e-4),
