@@ -1,10 +1,12 @@
 # make demo     the paper's impact, from the mesh to the figures
 # make test     every test
-.PHONY: help setup build demo test clean
+# make study    what accuracy costs in time: tables and plots of README and docs
+.PHONY: help setup build demo test study clean
 
 help:
 	@echo "make demo    install what is missing, build, run the paper's impact with all methods, draw its figures"
 	@echo "make test    install what is missing, run every test"
+	@echo "make study   measure what accuracy costs in time: the tables and plots of README.md and docs/cost.md, anew"
 	@echo "make build   the program: target/release/dgmpm"
 	@echo "make setup   only install what is missing (Debian packages, .venv)"
 	@echo "make clean   remove build results and runs; .venv stays"
@@ -20,6 +22,9 @@ demo: build
 
 test: setup
 	@tools/test.sh
+
+study: build
+	@tools/study.sh
 
 clean:
 	cargo clean
