@@ -187,3 +187,6 @@ impl Work {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
