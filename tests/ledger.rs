@@ -65,10 +65,12 @@ fn the_remainder_falls_under_refinement_with_the_order_of_the_scheme() {
     }
 }
 
-/// The paper's impact on 15 x 15 cells until the wave has come back: what is lost at faces, at the boundary and by the
-/// projection only grows, step by step.
+/// The paper's impact on 15 x 15 cells until the wave has come back. What is lost at faces and at the boundary only
+/// grows, step by step. The projection is of first order in what it removes and may give: it does in its first steps, and
+/// with RK in 51 of 380; it takes far more. Measured, of E(0): faces .0194, .0191, .0135, boundary .0172, .0172, .0099,
+/// projection 6.7e-4, 6.6e-4, 1.8e-4, of which it gave 2.8e-6, 2.9e-6, 1.6e-5.
 #[test]
-fn in_the_impact_every_cause_only_dissipates_for_all_methods() {
+fn in_the_impact_jumps_only_dissipate_and_the_projection_takes_more_than_it_gives() {
     for method in METHODS {
         let sets = [
             "mesh.rectangle={size=[3.0,3.0],cells=[15,15]}",
@@ -79,23 +81,21 @@ fn in_the_impact_every_cause_only_dissipates_for_all_methods() {
         let outcome = run("square_impact.toml", &sets);
         let ledger = outcome.ledger();
         let total = ledger.column("total_energy");
-        for cause in ["flux_dissipation", "boundary_dissipation", "curl_dissipation"] {
-            let lost = ledger.column(cause);
-            println!("{method} {cause}: {:.4e} of E(0)", lost.last().unwrap() / total[0]);
-            assert!(lost.len() > 300 && *lost.last().unwrap() > 0.0, "{method} {cause}");
-            for (step, pair) in lost.windows(2).enumerate() {
-                // Not even rounding: jumps are squares here, and the sums only add.
-                assert!(pair[1] >= pair[0], "{method} {cause}, step {step}: {pair:?}");
-            }
+        let mut all = 0.0;
+        for (cause, may_give) in [("flux", 0.0), ("boundary", 0.0), ("curl", 0.18)] {
+            let lost = ledger.column(&format!("{cause}_dissipation"));
+            let end = *lost.last().unwrap();
+            println!("{method} {cause}: {:.4e} of E(0)", end / total[0]);
+            assert!(lost.len() > 300 && end > 1e-4 * total[0], "{method} {cause}");
+            // Jumps are squares: not even rounding there. The projection: twice the measured share, .089.
+            let given: f64 = lost.windows(2).map(|pair| (pair[0] - pair[1]).max(0.0)).sum();
+            assert!(given <= may_give * end, "{method} {cause}: {given:e} of {end:e}");
+            all += end;
         }
-        let remainder = ledger.column("remainder");
-        let lost: f64 = ["flux_dissipation", "boundary_dissipation", "curl_dissipation"]
-            .iter()
-            .map(|cause| ledger.column(cause).last().copied().unwrap())
-            .sum();
-        println!("{method} remainder / lost {:.4}", remainder.last().unwrap() / lost);
+        let remainder = *ledger.column("remainder").last().unwrap();
+        println!("{method} remainder: {:.4e} of E(0)", remainder / total[0]);
         // The columns add up: E = E(0) - lost + remainder, to the rounding of numbers of size E.
-        let closed = total[0] - lost + remainder.last().unwrap();
+        let closed = total[0] - all + remainder;
         assert!((closed / total.last().unwrap() - 1.0).abs() < 1e-14, "{method}");
     }
 }
@@ -110,19 +110,17 @@ fn the_work_of_a_pulse_of_traction_is_that_of_the_plane_wave_and_goes_into_the_b
     let mesh = "size = [1.0, 0.3], cells = [20, 6]";
     let scene = scene("pulse", "linear-elastic", mesh, [FREE, pulse, symmetry, symmetry], more);
     let exact = 0.3 * 1e16 * 1e-4 * 0.375 / (7800.0 * 5875.097);
-    for method in METHODS {
+    // Twice what was measured: work -4.5e-5 (ADER), -8e-9 (RK); remainder -1.03e-4, 9e-8.
+    let ader = [9e-5, 2e-4];
+    for (method, [of_work, of_remainder]) in METHODS.into_iter().zip([ader, ader, [1.6e-8, 2e-7]]) {
         let outcome = of(&scene, method, 2, &[]);
-        let (work, now) = (part(&outcome, "boundary_work"), energy(&outcome));
-        let remainder = part(&outcome, "remainder");
-        println!(
-            "{method}: work {:e}, energy {:e}, remainder {:e}",
-            work / exact - 1.0,
-            now / exact - 1.0,
-            remainder / exact
-        );
-        assert!((work / exact - 1.0).abs() < 1e-3, "{method}");
-        assert!((now / exact - 1.0).abs() < 1e-3, "{method}");
-        assert!(remainder.abs() < 1e-3 * exact, "{method}");
+        let (work, remainder) = (part(&outcome, "boundary_work"), part(&outcome, "remainder"));
+        let given = energy(&outcome);
+        println!("{method}: {:e}, {:e}, {:e}", work / exact - 1.0, given / exact - 1.0, remainder / exact);
+        assert!((work / exact - 1.0).abs() < of_work, "{method}: {work:e} {exact:e}");
+        assert!(remainder.abs() < of_remainder * exact, "{method}: {remainder:e}");
+        // The body has it all, but for what 20 cells a metre lose of the pulse: measured 1.7e-4 and 2.3e-5.
+        assert!((given / exact - 1.0).abs() < 3.5e-4, "{method}: {given:e} {exact:e}");
     }
 }
 
@@ -138,37 +136,41 @@ fn the_work_of_gravity_is_weight_times_displacement_of_the_centre() {
     let exact = 7800.0 * 1e5 * (100.0 * t + 1e5 * t * t / 2.0);
     for method in METHODS {
         let outcome = of(&scene, method, 2, &[]);
-        println!(
-            "{method}: {:e}, remainder {:e}",
-            part(&outcome, "source_work") / exact - 1.0,
-            part(&outcome, "remainder") / exact
-        );
-        assert!((part(&outcome, "source_work") / exact - 1.0).abs() < 1e-3, "{method}");
+        let work = part(&outcome, "source_work") / exact - 1.0;
+        // Rounding of sums over 576 nodes and 100 steps and more; measured up to 7e-15.
+        assert!(work.abs() < 1e-13, "{method}: {work:e}");
+        // Time integration: measured 4.3e-5.
+        assert!(part(&outcome, "remainder").abs() < 9e-5 * exact, "{method}");
         // A free edge has t* = 0.
         assert_eq!(part(&outcome, "boundary_work"), 0.0);
     }
 }
 
-/// A free square spins by 400 m/s at its edges, about one turn.
+/// A free square spins by 400 m/s at its edges, about one turn. Linear momentum is kept to rounding by all methods.
+/// Angular momentum is not in (F, p): its change is measured as 3.9e-5, 4.9e-6 (ADER, 4 x 4 and 8 x 8 cells, third
+/// order) and 1.3e-8, 9.3e-10 (RK4). The bounds are twice that.
 #[test]
 fn a_free_spinning_square_keeps_its_momenta() {
     let more = "[initial]\nvelocity = [\"-800*(y-0.5)\", \"800*(x-0.5)\"]\n\
                 [scheme]\nmethod = \"rk-dgfem\"\ndegree = 2\n[time]\nend = 7.854e-3";
     let scene = scene("spin", "neo-hookean", "size = [1.0, 1.0], cells = [4, 4]", [FREE; 4], more);
-    for method in METHODS {
-        for cells in [4, 8] {
+    for (method, bounds) in METHODS.into_iter().zip([[8e-5, 1e-5], [8e-5, 1e-5], [2.7e-8, 2e-9]]) {
+        let changes = [4, 8].map(|cells| {
             let set = format!("mesh.rectangle.cells=[{cells},{cells}]");
             let outcome = of(&scene, method, 2, &[&set, "output.0.every_steps=100"]);
-            let momenta: Vec<f64> =
-                outcome.summary["angular_momentum"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
-            println!(
-                "{method} {cells}: {momenta:?} change {:e} E {:e} p {:?}",
-                momenta[1] / momenta[0] - 1.0,
-                outcome.number("total_energy_ratio") - 1.0,
-                outcome.summary["momentum"]
-            );
-            println!("  {:?}", outcome.summary["balance"]);
-        }
+            let of = |key: &str, k: usize| outcome.summary[key][k].as_f64().unwrap();
+            // rho0 800 /s times the polar moment of the square, 1/6 m^4.
+            assert!((of("angular_momentum", 0) / (7800.0 * 800.0 / 6.0) - 1.0).abs() < 1e-14);
+            for k in 0..2 {
+                // Rounding of 2000 steps and more on numbers of rho0 v = 3e6; measured 6e-10.
+                assert!(of("momentum", k).abs() < 1e-8, "{method}: {:?}", outcome.summary["momentum"]);
+            }
+            assert!(outcome.number("total_energy_ratio") < 1.0, "{method}");
+            (of("angular_momentum", 1) / of("angular_momentum", 0) - 1.0).abs()
+        });
+        println!("{method}: {changes:?}");
+        assert!(changes[0] < bounds[0] && changes[1] < bounds[1], "{method}: {changes:?}");
+        assert!(changes[0] > 6.0 * changes[1], "{method}: {changes:?}");
     }
 }
 
@@ -200,5 +202,17 @@ fn the_balance_is_there_only_where_a_ledger_asks_for_it_and_changes_no_energy() 
             assert_eq!(last(ledger.column(key)), part(&on, key), "{method} {key}");
         }
         assert_eq!(last(ledger.column("angular_momentum")), on.summary["angular_momentum"][1].as_f64().unwrap());
+    }
+}
+
+#[test]
+fn balance_is_a_key_of_the_ledger_alone() {
+    let scene = scene("key", "neo-hookean", "size = [1.0, 1.0], cells = [4, 4]", [WALL; 4], BOX);
+    let load = |set: &str| dgmpm::scene::Scene::load(&scene, &[set.to_owned()]);
+    assert!(load("output.0.balance=true").unwrap().wants_displacement());
+    assert!(!load("output.0.balance=false").unwrap().wants_displacement());
+    for wrong in ["output.0.balance=1", "output.0={kind=\"fields\", at=[0.0], balance=true}"] {
+        let message = load(wrong).unwrap_err().to_string();
+        assert!(message.contains("balance"), "{wrong}: {message}");
     }
 }
