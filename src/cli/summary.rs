@@ -7,7 +7,7 @@ use crate::exact::{Errors, Exact, errors};
 use crate::run::{Folder, Report, norms};
 use crate::scene::Scene;
 use crate::state::State;
-use crate::step::{Scheme, phase::NAMES};
+use crate::step::{Balance, Scheme, phase::NAMES};
 use serde_json::{Value, json};
 use std::sync::Arc;
 
@@ -99,7 +99,27 @@ fn rows(report: &Report) -> Vec<(String, String)> {
             let change = format!("{:.6e} -> {:.6e} kg/s", first.momentum[k], last.momentum[k]);
             rows.push(row(format!("momentum {axis}"), change));
         }
+        if let Some((first, last)) = first.angular_momentum.zip(last.angular_momentum) {
+            rows.push(row("angular momentum", format!("{first:.6e} -> {last:.6e} kg m/s")));
+        }
+        if let Some(balance) = &report.balance {
+            rows.extend(balance_rows(balance, last.energy()));
+        }
         rows.push(row("min J, max |curl F|", format!("{:.6}, {:.3e} 1/m", report.min_j, last.max_curl)));
     }
     rows
+}
+
+/// Where energy came from and went to; what a run did not have is left out.
+fn balance_rows(balance: &Balance, energy: f64) -> Vec<(String, String)> {
+    let parts = [
+        ("work of the boundary", balance.boundary_work),
+        ("work of sources", balance.source_work),
+        ("lost at faces", balance.flux_dissipation),
+        ("lost at the boundary", balance.boundary_dissipation),
+        ("lost by the projection", balance.curl_dissipation),
+    ];
+    let there = parts.into_iter().filter(|(_, joule)| *joule != 0.0);
+    let all = there.chain([("remainder (time integration)", balance.remainder(energy))]);
+    all.map(|(name, joule)| row(format!("  {name}"), format!("{joule:.6e} J/m"))).collect()
 }

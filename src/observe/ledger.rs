@@ -1,8 +1,9 @@
-//! `ledger.csv`: energy, momentum and health over time.
+//! `ledger.csv`: energy, momentum and health over time, and where energy came from and went to.
 
 use super::{Observer, Schedule, View};
 use crate::error::Error;
 use crate::io::csv::Table;
+use crate::step::{Balance, Totals};
 use std::path::Path;
 
 const COLUMNS: [&str; 11] = [
@@ -19,30 +20,60 @@ const COLUMNS: [&str; 11] = [
     "c_max",
 ];
 
-/// Writes a row each time it looks. Energies in J and momenta in kg m/s, per metre of thickness.
+/// Columns of the balance, behind the others; all but the last cumulated since the start of the run.
+const BALANCE: [&str; 7] = [
+    "boundary_work",
+    "source_work",
+    "flux_dissipation",
+    "boundary_dissipation",
+    "curl_dissipation",
+    "remainder",
+    "angular_momentum",
+];
+
+/// Writes a row each time it looks. Energies in J, momenta in kg m/s and kg m^2/s, per metre of thickness.
 pub struct Ledger {
     schedule: Schedule,
+    balance: bool,
     table: Table,
 }
 
 impl Ledger {
-    /// Starts `path` with its header.
+    /// Starts `path` with its header; with `balance` it has the columns of [`Balance`], too.
     ///
     /// # Errors
     /// Where the file cannot be made.
-    pub fn create(path: &Path, schedule: Schedule) -> Result<Self, Error> {
-        Ok(Self { schedule, table: Table::create(path, &COLUMNS)? })
+    pub fn create(path: &Path, schedule: Schedule, balance: bool) -> Result<Self, Error> {
+        let more = if balance { &BALANCE[..] } else { &[] };
+        Ok(Self { schedule, balance, table: Table::create(path, &[&COLUMNS[..], more].concat())? })
     }
 }
 
+/// The numbers of the columns of the balance.
+fn columns(balance: &Balance, totals: &Totals) -> [f64; BALANCE.len()] {
+    [
+        balance.boundary_work,
+        balance.source_work,
+        balance.flux_dissipation,
+        balance.boundary_dissipation,
+        balance.curl_dissipation,
+        balance.remainder(totals.energy()),
+        totals.angular_momentum.unwrap_or(f64::NAN),
+    ]
+}
+
 impl Observer for Ledger {
+    fn wants_balance(&self) -> bool {
+        self.balance
+    }
+
     fn schedule(&mut self) -> &mut Schedule {
         &mut self.schedule
     }
 
     fn observe(&mut self, view: &View) -> Result<(), Error> {
         let totals = view.scheme.totals(view.state);
-        self.table.push(&[
+        let mut row = vec![
             view.state.step as f64,
             view.state.time,
             view.dt,
@@ -54,7 +85,9 @@ impl Observer for Ledger {
             view.survey.min_j,
             totals.max_curl,
             view.survey.fastest,
-        ])?;
+        ];
+        row.extend(view.balance.filter(|_| self.balance).iter().flat_map(|balance| columns(balance, &totals)));
+        self.table.push(&row)?;
         // Row by row on the disk: a run that dies leaves its history.
         self.table.flush()
     }

@@ -19,7 +19,7 @@ pub use solution::{Point, Solution};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::state::State;
-use crate::step::{Scheme, Survey};
+use crate::step::{Balance, Scheme, Survey};
 
 /// What an observer sees: the state at the end of a step.
 #[derive(Clone, Copy)]
@@ -32,12 +32,19 @@ pub struct View<'a> {
     pub state: &'a State,
     /// Its wave speeds and min J.
     pub survey: &'a Survey,
+    /// The balance of energy since the start; none where no observer wants it.
+    pub balance: Option<&'a Balance>,
     /// The step that follows, s; 0 at the end of the run.
     pub dt: f64,
 }
 
 /// Something that looks at the state at certain times.
 pub trait Observer {
+    /// Whether the run must meter its balance of energy for it.
+    fn wants_balance(&self) -> bool {
+        false
+    }
+
     /// When it looks.
     fn schedule(&mut self) -> &mut Schedule;
 

@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::observe::{Observer, View};
 use crate::state::State;
-use crate::step::{Loss, Scheme, Survey, Work};
+use crate::step::{Balance, Loss, Scheme, Survey, Work};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How far and in what steps.
@@ -62,6 +62,9 @@ impl Run<'_> {
     /// See [`Stop`].
     pub fn advance(&mut self, state: &mut State, report: &mut Report) -> Result<(), Stop> {
         let mut work = Work::new(self.scheme, state);
+        if self.observers.iter().any(|observer| observer.wants_balance()) {
+            work = work.with_balance(self.scheme);
+        }
         let mut survey = Survey::default();
         self.scheme.survey(state, &work, &mut survey).map_err(Stop::Unstable)?;
         report.start(self.scheme, state, &work);
@@ -70,7 +73,7 @@ impl Run<'_> {
         while state.time < self.settings.end {
             let stop = self.next_stop(state.time);
             let dt = step_size(stop - state.time, self.settings.courant * h / survey.fastest);
-            self.observe(state, &survey, dt)?;
+            self.observe(state, &survey, report.balance.as_ref(), dt)?;
             if self.interrupt.load(Ordering::Relaxed) {
                 return Err(Stop::Interrupted);
             }
@@ -82,9 +85,9 @@ impl Run<'_> {
             self.scheme.survey(&work.next, &work, &mut next).map_err(Stop::Unstable)?;
             std::mem::swap(state, &mut work.next);
             std::mem::swap(&mut survey, &mut next);
-            report.count(dt, &survey, &mut work);
+            report.count(self.scheme, dt, &survey, &mut work);
         }
-        self.observe(state, &survey, 0.0)?;
+        self.observe(state, &survey, report.balance.as_ref(), 0.0)?;
         Ok(())
     }
 
@@ -101,10 +104,10 @@ impl Run<'_> {
     }
 
     /// Shows the state to those who wait for it.
-    fn observe(&mut self, state: &State, survey: &Survey, dt: f64) -> Result<(), Error> {
+    fn observe(&mut self, state: &State, survey: &Survey, balance: Option<&Balance>, dt: f64) -> Result<(), Error> {
         for observer in &mut self.observers {
             if observer.schedule().due(state.step, state.time, dt) {
-                observer.observe(&View { mesh: self.mesh, scheme: self.scheme, state, survey, dt })?;
+                observer.observe(&View { mesh: self.mesh, scheme: self.scheme, state, survey, balance, dt })?;
             }
         }
         Ok(())

@@ -2,7 +2,7 @@
 
 use crate::state::{State, UNKNOWNS};
 use crate::step::phase::{NAMES, Phases};
-use crate::step::{Scheme, Survey, Totals, Work};
+use crate::step::{Balance, Scheme, Survey, Totals, Work};
 use cpu_time::ProcessTime;
 use serde_json::{Map, Value, json};
 use std::time::Instant;
@@ -20,6 +20,8 @@ pub struct Report {
     pub first: Option<Totals>,
     /// Totals at the end.
     pub last: Option<Totals>,
+    /// The balance of energy since the start, where an observer wants it.
+    pub balance: Option<Balance>,
     /// min J over all points and steps.
     pub min_j: f64,
     /// Bytes of operators, state and work.
@@ -41,6 +43,7 @@ impl Default for Report {
             phases: Phases::default(),
             first: None,
             last: None,
+            balance: None,
             min_j: f64::INFINITY,
             bytes: 0,
             wall: 0.0,
@@ -54,15 +57,20 @@ impl Default for Report {
 impl Report {
     pub(super) fn start(&mut self, scheme: &Scheme, state: &State, work: &Work) {
         self.clock = (Instant::now(), ProcessTime::now());
-        self.first = Some(scheme.totals(state));
+        let first = scheme.totals(state);
+        self.balance = work.has_balance().then(|| Balance::starting_at(first.energy()));
+        self.first = Some(first);
         self.bytes = scheme.operators.bytes() + work.bytes() + size_of_val(&state.u[..]);
     }
 
-    pub(super) fn count(&mut self, dt: f64, survey: &Survey, work: &mut Work) {
+    pub(super) fn count(&mut self, scheme: &Scheme, dt: f64, survey: &Survey, work: &mut Work) {
         self.steps += 1;
         self.dt = [self.dt[0].min(dt), self.dt[1].max(dt)];
         self.min_j = self.min_j.min(survey.min_j);
         self.phases.add(&work.take_phases());
+        if let Some(balance) = &mut self.balance {
+            work.settle(scheme, balance);
+        }
     }
 
     /// Stops the clocks and takes the totals; also for a run that stopped early.
@@ -90,7 +98,7 @@ impl Report {
         let phases: Map<String, Value> =
             NAMES.iter().zip(self.phases.seconds).map(|(name, s)| ((*name).to_owned(), json!(s))).collect();
         let last = self.last.unwrap_or_else(|| scheme.totals(state));
-        let pairs = [
+        let mut pairs = vec![
             ("cells", json!(scheme.operators.blocks.slot.len())),
             ("dofs", json!(dofs(scheme))),
             ("steps", json!(self.steps)),
@@ -110,8 +118,26 @@ impl Report {
             ("min_j", json!(self.min_j.min(last.min_j))),
             ("max_curl_f", json!(last.max_curl)),
         ];
+        if let Some(balance) = &self.balance {
+            pairs.push(("balance", balance_json(balance, last.energy())));
+        }
+        let first = self.first.and_then(|first| first.angular_momentum);
+        if let Some((first, last)) = first.zip(last.angular_momentum) {
+            pairs.push(("angular_momentum", json!([first, last])));
+        }
         pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
     }
+}
+
+fn balance_json(balance: &Balance, energy: f64) -> Value {
+    json!({
+        "boundary_work": balance.boundary_work,
+        "source_work": balance.source_work,
+        "flux_dissipation": balance.flux_dissipation,
+        "boundary_dissipation": balance.boundary_dissipation,
+        "curl_dissipation": balance.curl_dissipation,
+        "remainder": balance.remainder(energy),
+    })
 }
 
 /// 6 (N+1)^2 cells: the grid unknowns, for all methods.

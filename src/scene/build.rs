@@ -214,9 +214,10 @@ impl Scene {
         Ok(())
     }
 
-    /// Whether an output asks for the displacement.
+    /// Whether an output asks for the displacement: as a field, or for the angular momentum of a ledger.
     pub fn wants_displacement(&self) -> bool {
-        self.outputs.iter().any(|output| output.fields.contains(&Field::Displacement))
+        let balance = |output: &Output| output.what == What::Ledger { balance: true };
+        self.outputs.iter().any(|output| output.fields.contains(&Field::Displacement) || balance(output))
     }
 
     /// dt c / h and the end.
@@ -273,16 +274,18 @@ impl Scene {
         for output in &self.outputs {
             let schedule = schedule(output);
             out.push(match (output.what, samples(output)) {
-                (What::Ledger, _) => Box::new(Ledger::create(&folder.ledger(), schedule.with_end())?),
+                (What::Ledger { balance }, _) => {
+                    Box::new(Ledger::create(&folder.ledger(), schedule.with_end(), balance)?)
+                }
                 (_, Some(samples)) => {
                     Box::new(Line::create(&folder.line(&output.name), mesh, &material, &samples, schedule)?)
                 }
                 _ => Box::new(Snapshots::new(&folder.snapshots(), schedule)),
             });
         }
-        if !self.outputs.iter().any(|output| output.what == What::Ledger) {
+        if !self.outputs.iter().any(|output| matches!(output.what, What::Ledger { .. })) {
             let schedule = Schedule::new(crate::observe::When::EverySteps(LEDGER_STEPS), false).with_end();
-            out.push(Box::new(Ledger::create(&folder.ledger(), schedule)?));
+            out.push(Box::new(Ledger::create(&folder.ledger(), schedule, false)?));
         }
         Ok(out)
     }

@@ -240,7 +240,10 @@ pub enum What {
         samples: usize,
     },
     /// Energy and momentum.
-    Ledger,
+    Ledger {
+        /// With the balance of energy by cause.
+        balance: bool,
+    },
 }
 
 /// When something is recorded.

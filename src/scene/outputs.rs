@@ -34,7 +34,7 @@ pub(super) fn outputs(tables: Vec<Reader>) -> Result<Vec<Output>> {
     let mut outputs: Vec<Output> = Vec::with_capacity(tables.len());
     for mut table in tables {
         let output = output(&mut table)?;
-        let ledger = |output: &Output| output.what == What::Ledger;
+        let ledger = |output: &Output| matches!(output.what, What::Ledger { .. });
         if ledger(&output) && outputs.iter().any(ledger) {
             return Err(table.wrong("kind", "two [[output]] of kind \"ledger\"", "one ledger records all: remove one"));
         }
@@ -71,7 +71,7 @@ fn output(table: &mut Reader) -> Result<Output> {
     let (what, fields) = match kind {
         Kind::Fields => (What::Fields, fields(table)?.unwrap_or_else(all)),
         Kind::Line => (line(table)?, fields(table)?.unwrap_or_else(|| vec![Field::CauchyStress, Field::Velocity])),
-        Kind::Ledger => (What::Ledger, Vec::new()),
+        Kind::Ledger => (What::Ledger { balance: table.boolean("balance")?.unwrap_or(true) }, Vec::new()),
     };
     table.finish()?;
     if name.is_none() && kind == Kind::Line {

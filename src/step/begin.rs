@@ -1,5 +1,6 @@
 //! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
 
+use super::balance::{self, METERED, Sums};
 use super::dense::{add_scaled, apply, gather, interleave};
 use super::predictor::Predictor;
 use super::volume::{self, Metric};
@@ -8,6 +9,7 @@ use crate::lane::{Coefficient, F8, LANES, Lanes, Work, store_array};
 use crate::material::Material;
 use crate::mesh::map;
 use crate::operators::{PointMatrices, Points, Share};
+use crate::riemann::TRACE;
 use crate::state::{State, UNKNOWNS};
 use crate::with_law;
 use std::time::Instant;
@@ -28,6 +30,8 @@ pub(super) struct Block<'a> {
     pub rate: &'a mut [F8],
     /// Traces of this block (out).
     pub traces: &'a mut [F8],
+    /// Its balance of energy (begun here at the first stage); none where it is off.
+    pub sums: Option<&'a mut Sums>,
     /// The thread's arrays.
     pub scratch: &'a mut Scratch,
 }
@@ -66,7 +70,21 @@ impl Block<'_> {
             }
         }
         self.scratch.phases.book(Phase::Volume, &mut clock);
-        volume::traces::<L, M>(law, line, metric, &self.scratch.nodes, self.traces);
+        let nodes = &self.scratch.nodes;
+        match self.sums.as_mut() {
+            None => volume::traces::<L, M, TRACE>(law, line, metric, nodes, self.traces),
+            Some(sums) => {
+                volume::traces::<L, M, METERED>(law, line, metric, nodes, self.traces);
+                if self.stage.number == 0 {
+                    **sums = Sums::default();
+                }
+                if !self.scheme.sources.is_empty() {
+                    let power = balance::source_power::<L>(law.density(), metric.mass, &nodes.mean, &nodes.source);
+                    let dt = L::splat(self.stage.dt * self.scheme.weight(self.stage.number));
+                    balance::add(dt, power, &mut sums.source_work);
+                }
+            }
+        }
         self.scratch.phases.book(Phase::Traces, &mut clock);
     }
 

@@ -1,7 +1,8 @@
 //! Totals of a state by grid quadrature (sums over points with volumes are wrong for most layouts).
 
 use super::Scheme;
-use crate::state::State;
+use crate::mesh::map;
+use crate::state::{State, UNKNOWNS};
 use crate::tensor;
 use rayon::prelude::*;
 
@@ -14,6 +15,8 @@ pub struct Totals {
     pub strain: f64,
     /// int p dX, kg/s (per metre of thickness).
     pub momentum: [f64; 2],
+    /// int (x_1 p_2 - x_2 p_1) dX with x = X + u, kg m/s (per metre of thickness), about the origin; only where the displacement is known.
+    pub angular_momentum: Option<f64>,
     /// int F dX, m^2.
     pub deformation: [f64; 4],
     /// min J over the nodes.
@@ -28,10 +31,16 @@ impl Totals {
         kinetic: 0.0,
         strain: 0.0,
         momentum: [0.0; 2],
+        angular_momentum: None,
         deformation: [0.0; 4],
         min_j: f64::INFINITY,
         max_curl: 0.0,
     };
+
+    /// No cell yet of a state with or without displacement.
+    fn empty(state: &State) -> Self {
+        Totals { angular_momentum: state.has_displacement().then_some(0.0), ..Totals::EMPTY }
+    }
 
     /// Kinetic and strain energy, J/m.
     pub fn energy(&self) -> f64 {
@@ -42,6 +51,7 @@ impl Totals {
         self.kinetic += other.kinetic;
         self.strain += other.strain;
         self.momentum.iter_mut().zip(other.momentum).for_each(|(a, b)| *a += b);
+        self.angular_momentum = self.angular_momentum.zip(other.angular_momentum).map(|(a, b)| a + b);
         self.deformation.iter_mut().zip(other.deformation).for_each(|(a, b)| *a += b);
         self.min_j = self.min_j.min(other.min_j);
         self.max_curl = self.max_curl.max(other.max_curl);
@@ -54,12 +64,12 @@ impl Scheme {
         let blocks: Vec<Totals> = (0..self.operators.blocks.len())
             .into_par_iter()
             .map(|block| {
-                let mut sum = Totals::EMPTY;
+                let mut sum = Totals::empty(state);
                 (0..self.operators.blocks.count[block]).for_each(|lane| sum.add(&self.totals_of(state, block, lane)));
                 sum
             })
             .collect();
-        let mut sum = Totals::EMPTY;
+        let mut sum = Totals::empty(state);
         blocks.iter().for_each(|block| sum.add(block));
         sum
     }
@@ -67,7 +77,7 @@ impl Scheme {
     fn totals_of(&self, state: &State, block: usize, lane: usize) -> Totals {
         let (n, law) = (self.operators.nodes(), &self.laws[self.operators.blocks.material[block]]);
         let u = &state.u[block * state.components * n..];
-        let mut sum = Totals::EMPTY;
+        let mut sum = Totals::empty(state);
         for a in 0..n {
             let mass = self.operators.geometry.mass[block * n + a].0[lane];
             let [f11, f12, f21, f22, p1, p2]: [f64; 6] = std::array::from_fn(|k| u[k * n + a].0[lane]);
@@ -76,12 +86,23 @@ impl Scheme {
                 kinetic: mass * (p1 * p1 + p2 * p2) / (2.0 * law.density()),
                 strain: mass * law.energy(f),
                 momentum: [mass * p1, mass * p2],
+                angular_momentum: self.position(state, block, lane, a).map(|x| mass * (x[0] * p2 - x[1] * p1)),
                 deformation: f.map(|x| mass * x),
                 min_j: tensor::det(f),
                 max_curl: self.curl(u, block, lane, a),
             });
         }
         sum
+    }
+
+    /// x = X + u of node a, where the displacement is known.
+    fn position(&self, state: &State, block: usize, lane: usize, a: usize) -> Option<[f64; 2]> {
+        let (operators, n) = (&self.operators, self.operators.nodes());
+        let at = (block * state.components + UNKNOWNS) * n + a;
+        state.has_displacement().then(|| {
+            let x = map::position(&operators.geometry.corners_of(block, lane), operators.line.basis.node_2d(a));
+            [x[0] + state.u[at].0[lane], x[1] + state.u[at + n].0[lane]]
+        })
     }
 
     /// Larger of the two rows' |dF_i2/dX_1 - dF_i1/dX_2| at node a.

@@ -1,14 +1,15 @@
 //! `finish`: with the neighbours' traces, flux (3), lift (14), and after the last stage the update (13) and LCF.
 
+use super::balance::{self, FacePower, METERED, Sums};
 use super::volume::Metric;
-use super::{Method, Phase, Scheme, Scratch, Stage, Survey, curl, dense};
+use super::{Phase, Scheme, Scratch, Stage, Survey, curl, dense};
 use crate::boundary::FacePoint;
 use crate::lane::{F8, LANES, Lanes, Work, load_array};
 use crate::mesh::map;
 use crate::operators::Neighbour;
 use crate::riemann::{Riemann, TRACE, Trace, interface};
 use crate::state::State;
-use crate::with_flux;
+use crate::{with_flux, with_law};
 use std::time::Instant;
 
 /// The work on one block.
@@ -31,6 +32,8 @@ pub(super) struct Block<'a> {
     pub traces: &'a [F8],
     /// New unknowns of this block (out, after the last stage).
     pub next: &'a mut [F8],
+    /// Its balance of energy; none where it is off.
+    pub sums: Option<&'a mut Sums>,
     /// The thread's arrays.
     pub scratch: &'a mut Scratch,
 }
@@ -40,7 +43,10 @@ impl Work for Block<'_> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
         let mut clock = Instant::now();
-        with_flux!(self.scheme.flux, riemann => self.fluxes::<L, _>(riemann));
+        match self.sums.is_some() {
+            false => with_flux!(self.scheme.flux, riemann => self.fluxes::<L, _, TRACE>(riemann)),
+            true => with_flux!(self.scheme.flux, riemann => self.fluxes::<L, _, METERED>(riemann)),
+        }
         self.lift::<L>();
         self.scratch.phases.book(Phase::Flux, &mut clock);
         if self.stage.number + 1 < self.scheme.stages() {
@@ -67,9 +73,10 @@ fn lane_of(numbers: &[F8], lane: usize) -> Trace<f64> {
 }
 
 impl Block<'_> {
-    /// Lifted numbers of all faces: len w_k (Flux* - own flux of the F rows), [face][component][point].
+    /// Lifted numbers of all faces: len w_k (Flux* - own flux of the F rows), [face][component][point]. Traces have W
+    /// numbers; those of METERED are for the balance.
     #[inline(always)]
-    fn fluxes<L: Lanes, R: Riemann>(&mut self, riemann: &R) {
+    fn fluxes<L: Lanes, R: Riemann, const W: usize>(&mut self, riemann: &R) {
         let operators = &self.scheme.operators;
         let (m, n) = (operators.line.m, operators.nodes());
         let metric = Metric::of(&operators.geometry, self.block, n);
@@ -78,9 +85,9 @@ impl Block<'_> {
             let normal = load_array::<L, 2>(&metric.normal[2 * face..2 * face + 2]);
             let length = L::load(&metric.length[face]);
             for point in 0..m {
-                let at = ((4 * self.block + face) * m + point) * TRACE;
-                let own = &self.traces[at..at + TRACE];
-                let mut other = [F8::ZERO; TRACE];
+                let at = ((4 * self.block + face) * m + point) * W;
+                let own = &self.traces[at..at + W];
+                let mut other = [F8::ZERO; W];
                 self.gather(face, point, own, &mut other);
                 let (minus, plus) = (load::<L>(own), load::<L>(&other));
                 let flux = riemann.flux(&minus, &plus, normal, L::splat(density));
@@ -90,6 +97,9 @@ impl Block<'_> {
                 }
                 self.special(face, point, own, &other, &mut stored);
                 let scale = length * L::splat(operators.line.basis.weights[point]);
+                if W > TRACE {
+                    self.meter::<L>(face, &FacePower { minus: own, plus: &other, flux: &stored }, scale, normal);
+                }
                 for k in 0..6 {
                     let mut lifted = L::load(&stored[k]);
                     if k < 4 {
@@ -101,25 +111,45 @@ impl Block<'_> {
         }
     }
 
+    /// What a face point adds to the balance of the block; `scale` is w len.
+    #[inline(always)]
+    fn meter<L: Lanes>(&mut self, face: usize, power: &FacePower, scale: L, normal: [L; 2]) {
+        let Some(sums) = self.sums.as_mut() else { return };
+        let mut weight = F8::ZERO;
+        (scale * L::splat(self.stage.dt * self.scheme.weight(self.stage.number))).store(&mut weight);
+        power.jumps::<L>(&weight, normal, &mut sums.flux_dissipation);
+        let operators = &self.scheme.operators;
+        for (lane, neighbour) in operators.blocks.neighbours[self.block][face].iter().enumerate() {
+            if matches!(neighbour, Neighbour::Boundary(_)) {
+                let at = (self.block * 4 + face) * 2;
+                let normal = [operators.geometry.normal[at].0[lane], operators.geometry.normal[at + 1].0[lane]];
+                power.boundary(&weight, normal, lane, sums);
+            }
+        }
+    }
+
     /// The traces of the other side, seen with this side's normal. Where there is no cell, the own trace.
     #[inline(always)]
-    fn gather(&self, face: usize, point: usize, own: &[F8], other: &mut [F8; TRACE]) {
+    fn gather<const W: usize>(&self, face: usize, point: usize, own: &[F8], other: &mut [F8; W]) {
         let m = self.scheme.operators.line.m;
         let numbers = crate::lane::as_f64(self.traces);
         for (lane, neighbour) in self.scheme.operators.blocks.neighbours[self.block][face].iter().enumerate() {
             match *neighbour {
                 Neighbour::Cell(across) | Neighbour::Interface(across, _) => {
                     let there = if across.flip { m - 1 - point } else { point };
-                    let from = &numbers[(across.face * m + there) * TRACE * LANES + across.lane..];
-                    for k in 0..TRACE {
+                    let from = &numbers[(across.face * m + there) * W * LANES + across.lane..];
+                    for k in 0..W {
                         other[k].0[lane] = from[k * LANES];
                     }
                     // The neighbour's traction is P N^+ with N^+ = -N.
                     other[6].0[lane] = -other[6].0[lane];
                     other[7].0[lane] = -other[7].0[lane];
+                    for s in &mut other[TRACE..] {
+                        s.0[lane] = -s.0[lane];
+                    }
                 }
                 Neighbour::Boundary(_) | Neighbour::Padding => {
-                    (0..TRACE).for_each(|k| other[k].0[lane] = own[k].0[lane]);
+                    (0..W).for_each(|k| other[k].0[lane] = own[k].0[lane]);
                 }
             }
         }
@@ -187,10 +217,7 @@ impl Block<'_> {
         let begin = stride * self.block;
         self.next.copy_from_slice(&self.state.u[begin..begin + stride]);
         let dt = self.stage.dt;
-        let weight = |stage: usize| match &self.scheme.method {
-            Method::Ader { .. } => 1.0,
-            Method::RungeKutta(tableau) => tableau.b[stage],
-        };
+        let weight = |stage: usize| self.scheme.weight(stage);
         for (stage, rate) in self.before.iter().enumerate() {
             if weight(stage) != 0.0 {
                 dense::add_scaled::<L>(dt * weight(stage), &rate[begin..begin + stride], self.next);
@@ -207,8 +234,18 @@ impl Block<'_> {
         let (c, h) = (&self.survey.speed[self.block].0, &operators.geometry.h[self.block].0);
         let theta = F8(std::array::from_fn(|lane| -(-rate * c[lane] * self.stage.dt / h[lane]).exp_m1()));
         let mass = Metric::of(&operators.geometry, self.block, operators.nodes()).mass;
+        let law = &self.scheme.laws[operators.blocks.material[self.block]];
+        let one = L::splat(1.0);
+        if let Some(sums) = self.sums.as_mut() {
+            let before = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, self.next));
+            balance::add(one, before, &mut sums.curl_dissipation);
+        }
         let nodes = &mut self.scratch.nodes;
         let arrays = curl::Arrays { weighted: &mut nodes.weighted, coefficients: &mut nodes.coefficients };
         curl::project::<L>(&curl_free.pool, self.block, &theta, mass, arrays, self.next);
+        if let Some(sums) = self.sums.as_mut() {
+            let after = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, self.next));
+            balance::add(-one, after, &mut sums.curl_dissipation);
+        }
     }
 }

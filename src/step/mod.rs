@@ -4,6 +4,7 @@
 //! traces, `finish` = flux, lift, update, LCF. [`Scheme`] is read-only, [`State`] is all that changes, [`Work`] carries
 //! nothing from step to step: threads, restart and regrid follow from that.
 
+mod balance;
 mod begin;
 pub mod cfl;
 mod curl;
@@ -16,6 +17,7 @@ mod runge_kutta;
 mod survey;
 mod volume;
 
+pub use balance::Balance;
 pub use energy::Totals;
 pub use phase::{Phase, Phases};
 pub use runge_kutta::Tableau;
@@ -29,6 +31,7 @@ use crate::operators::Operators;
 use crate::riemann::{Flux, TRACE};
 use crate::source::Source;
 use crate::state::State;
+use rayon::iter::Either;
 use rayon::prelude::*;
 use std::sync::Mutex;
 
@@ -72,8 +75,10 @@ pub struct Work {
     pub next: State,
     /// dU/dt of each stage, as `State::u`.
     rates: Vec<Vec<F8>>,
-    /// Traces of all faces: [block][face][point][TRACE numbers].
+    /// Traces of all faces: [block][face][point][TRACE numbers, or METERED with the balance].
     traces: Vec<F8>,
+    /// The balance of the step, by block; none where nobody asks for it.
+    balance: Option<Vec<balance::Sums>>,
     /// One a thread.
     scratch: Vec<Mutex<Scratch>>,
 }
@@ -107,6 +112,7 @@ impl Work {
             next: state.clone(),
             rates: vec![vec![F8::ZERO; state.u.len()]; stages],
             traces: vec![F8::ZERO; operators.blocks.len() * 4 * operators.line.m * TRACE],
+            balance: None,
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
         }
     }
@@ -124,7 +130,7 @@ impl Work {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let numbers = self.next.u.len() + self.traces.len() + self.rates.iter().map(Vec::len).sum::<usize>();
-        numbers * size_of::<F8>()
+        numbers * size_of::<F8>() + self.balance.as_ref().map_or(0, |sums| size_of_val(&sums[..]))
     }
 }
 
@@ -144,6 +150,17 @@ pub(crate) fn with_scratch<R>(scratch: &[Mutex<Scratch>], body: impl FnOnce(&mut
     let thread = rayon::current_thread_index().unwrap_or(0) % scratch.len();
     let mut guard = scratch[thread].lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     body(&mut guard)
+}
+
+/// The balance of each block, or for each block none.
+fn sums(
+    balance: &mut Option<Vec<balance::Sums>>,
+    blocks: usize,
+) -> impl IndexedParallelIterator<Item = Option<&mut balance::Sums>> {
+    match balance {
+        Some(sums) => Either::Left(sums.par_iter_mut().map(Some)),
+        None => Either::Right((0..blocks).into_par_iter().map(|_| None)),
+    }
 }
 
 impl Scheme {
@@ -176,17 +193,17 @@ impl Scheme {
     /// Volume term and traces of every block.
     fn begin(&self, stage: &Stage, state: &State, work: &mut Work) {
         let stride = state.components * self.operators.nodes();
-        let traces = 4 * self.operators.line.m * TRACE;
+        let blocks = self.operators.blocks.len();
+        let traces = work.traces.len() / blocks.max(1);
         let (before, now) = work.rates.split_at_mut(stage.number);
         let (before, scratch) = (&*before, &work.scratch);
-        now[0].par_chunks_mut(stride).zip(work.traces.par_chunks_mut(traces)).enumerate().for_each(
-            |(block, (rate, traces))| {
-                with_scratch(scratch, |scratch| {
-                    let work = begin::Block { scheme: self, stage, block, state, before, rate, traces, scratch };
-                    self.kernel.run(work)
-                })
-            },
-        );
+        let outputs = now[0].par_chunks_mut(stride).zip(work.traces.par_chunks_mut(traces.max(1)));
+        outputs.zip(sums(&mut work.balance, blocks)).enumerate().for_each(|(block, ((rate, traces), sums))| {
+            with_scratch(scratch, |scratch| {
+                let work = begin::Block { scheme: self, stage, block, state, before, rate, traces, sums, scratch };
+                self.kernel.run(work)
+            })
+        });
     }
 
     /// Fluxes, lift, and after the last stage the update, of every block.
@@ -194,25 +211,34 @@ impl Scheme {
         let stride = state.components * self.operators.nodes();
         let (before, now) = work.rates.split_at_mut(stage.number);
         let (before, scratch, traces) = (&*before, &work.scratch, &work.traces[..]);
-        now[0].par_chunks_mut(stride).zip(work.next.u.par_chunks_mut(stride)).enumerate().for_each(
-            |(block, (rate, next))| {
-                with_scratch(scratch, |scratch| {
-                    let work = finish::Block {
-                        scheme: self,
-                        stage,
-                        block,
-                        state,
-                        survey,
-                        before,
-                        rate,
-                        traces,
-                        next,
-                        scratch,
-                    };
-                    self.kernel.run(work)
-                })
-            },
-        );
+        let outputs = now[0].par_chunks_mut(stride).zip(work.next.u.par_chunks_mut(stride));
+        let sums = sums(&mut work.balance, self.operators.blocks.len());
+        outputs.zip(sums).enumerate().for_each(|(block, ((rate, next), sums))| {
+            with_scratch(scratch, |scratch| {
+                let work = finish::Block {
+                    scheme: self,
+                    stage,
+                    block,
+                    state,
+                    survey,
+                    before,
+                    rate,
+                    traces,
+                    next,
+                    sums,
+                    scratch,
+                };
+                self.kernel.run(work)
+            })
+        });
+    }
+
+    /// What the rate of a stage counts in U^(n+1) = U^n + dt sum_s b_s k_s; 1 for ADER.
+    fn weight(&self, stage: usize) -> f64 {
+        match &self.method {
+            Method::Ader { .. } => 1.0,
+            Method::RungeKutta(tableau) => tableau.b[stage],
+        }
     }
 
     /// Number of stages of a step (1 for ADER).

@@ -10,13 +10,13 @@ use crate::tensor;
 use std::sync::Arc;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
+pub(super) enum Kind {
     RkDgfem,
     AderDgfem,
     AderDgmpm,
 }
 
-const KINDS: [Kind; 3] = [Kind::RkDgfem, Kind::AderDgfem, Kind::AderDgmpm];
+pub(super) const KINDS: [Kind; 3] = [Kind::RkDgfem, Kind::AderDgfem, Kind::AderDgmpm];
 
 /// What lies outside moves and is strained as the inside was at the start.
 struct Given {
@@ -30,11 +30,11 @@ impl Boundary for Given {
     }
 }
 
-fn steel() -> Law {
+pub(super) fn steel() -> Law {
     Law::NeoHookean(NeoHookean::new(1.0, 0.3, 1.3))
 }
 
-fn distorted(cells: usize) -> Mesh {
+pub(super) fn distorted(cells: usize) -> Mesh {
     let mut mesh = rectangle([1.0, 1.0], [cells, cells]).unwrap();
     for (i, x) in mesh.nodes.iter_mut().enumerate() {
         if x.iter().all(|x| *x > 0.0 && *x < 1.0) {
@@ -45,7 +45,13 @@ fn distorted(cells: usize) -> Mesh {
     mesh
 }
 
-fn scheme(mesh: &Mesh, kind: Kind, degree: usize, cloud: &Cloud, boundary: fn() -> Box<dyn Boundary>) -> Scheme {
+pub(super) fn scheme(
+    mesh: &Mesh,
+    kind: Kind,
+    degree: usize,
+    cloud: &Cloud,
+    boundary: fn() -> Box<dyn Boundary>,
+) -> Scheme {
     let sampling = match kind {
         Kind::RkDgfem => None,
         Kind::AderDgfem => Some(Sampling::Nodes),
@@ -70,12 +76,12 @@ fn scheme(mesh: &Mesh, kind: Kind, degree: usize, cloud: &Cloud, boundary: fn() 
     }
 }
 
-fn wall() -> Box<dyn Boundary> {
+pub(super) fn wall() -> Box<dyn Boundary> {
     Box::new(Wall { speed: None })
 }
 
 /// The state whose unknowns at a node are `u(X, number)`, number counting nodes over all cells.
-fn state(mesh: &Mesh, scheme: &Scheme, u: impl Fn([f64; 2], usize) -> [f64; 6]) -> State {
+pub(super) fn state(mesh: &Mesh, scheme: &Scheme, u: impl Fn([f64; 2], usize) -> [f64; 6]) -> State {
     let n = scheme.operators.nodes();
     let mut cells = vec![0.0; mesh.cells.len() * 6 * n];
     for (cell, values) in cells.chunks_mut(6 * n).enumerate() {
@@ -92,7 +98,7 @@ fn unpacked(scheme: &Scheme, state: &State) -> Vec<f64> {
 }
 
 /// Steps `state` in place at `courant` = dt c / h.
-fn march(scheme: &Scheme, state: &mut State, steps: usize, courant: f64) {
+pub(super) fn march(scheme: &Scheme, state: &mut State, steps: usize, courant: f64) {
     let mut work = Work::new(scheme, state);
     let mut survey = Survey::default();
     let h = scheme.operators.geometry.h.iter().flat_map(|h| h.0).fold(f64::INFINITY, f64::min);
@@ -103,7 +109,7 @@ fn march(scheme: &Scheme, state: &mut State, steps: usize, courant: f64) {
     }
 }
 
-fn midpoints(mesh: &Mesh, degree: usize) -> Cloud {
+pub(super) fn midpoints(mesh: &Mesh, degree: usize) -> Cloud {
     seed::seed(seed::Layout::Jitter { seed: 1, amount: 0.2 }, degree + 1, mesh.cells.len())
 }
 
@@ -112,7 +118,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Smooth, compressed by 10 %, not a gradient to the last digit.
-fn wavy(x: [f64; 2], _: usize) -> [f64; 6] {
+pub(super) fn wavy(x: [f64; 2], _: usize) -> [f64; 6] {
     let pi = std::f64::consts::PI;
     let (s, c) = ((pi * x[0]).sin() * (pi * x[1]).cos(), (pi * x[0]).cos() * (pi * x[1]).sin());
     [0.95 + 0.05 * c, 0.03 * s, -0.02 * s, 1.0 + 0.04 * s, 0.1 * s, -0.05 * c]
@@ -199,7 +205,7 @@ fn with_points_on_the_gauss_nodes_dgmpm_is_dgfem_after_1000_steps() {
 }
 
 /// Two laws in a chessboard: every face is an interface.
-fn chessboard(mesh: &Mesh, kind: Kind) -> (Scheme, Vec<f64>) {
+pub(super) fn chessboard(mesh: &Mesh, kind: Kind) -> (Scheme, Vec<f64>) {
     let cloud = midpoints(mesh, 2);
     let base = scheme(mesh, kind, 2, &cloud, || Box::new(crate::boundary::Free));
     let side = (mesh.cells.len() as f64).sqrt() as usize;
@@ -281,7 +287,7 @@ fn portable_and_widest_kernels_agree_after_100_steps() {
 }
 
 /// A number in -1/2..1/2 from another (the finaliser of splitmix64).
-fn noise(n: usize) -> f64 {
+pub(super) fn noise(n: usize) -> f64 {
     let mut z = (n as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

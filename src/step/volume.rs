@@ -3,10 +3,10 @@
 //! F rows in strong form (D v; `finish` adds the lifted jump of v), exact on uniform states; p rows in weak form. Both
 //! are exact integrals on bilinear cells, so the two forms agree there to rounding.
 
-use crate::lane::{F8, Lanes, load_array};
+use crate::lane::{F8, Lanes, load_array, store_array};
 use crate::material::Material;
 use crate::operators::{Geometry, Line};
-use crate::riemann::TRACE;
+use crate::riemann::{TRACE, tangent};
 use crate::tensor;
 
 /// Arrays of one block at its nodes.
@@ -121,9 +121,16 @@ pub fn volume<L: Lanes>(line: &Line, metric: Metric, arrays: &mut Arrays, rate: 
     }
 }
 
-/// Traces of all faces from the averages at the nodes; the speeds are those of the averaged F.
+/// Traces of all faces from the averages at the nodes; the speeds are those of the averaged F. Where a trace has more
+/// than [`TRACE`] numbers (W), s = P T is behind them.
 #[inline(always)]
-pub fn traces<L: Lanes, M: Material>(law: &M, line: &Line, metric: Metric, arrays: &Arrays, traces: &mut [F8]) {
+pub fn traces<L: Lanes, M: Material, const W: usize>(
+    law: &M,
+    line: &Line,
+    metric: Metric,
+    arrays: &Arrays,
+    traces: &mut [F8],
+) {
     let m = line.m;
     for face in 0..4 {
         let ends = &line.ends[face % 2];
@@ -144,9 +151,12 @@ pub fn traces<L: Lanes, M: Material>(law: &M, line: &Line, metric: Metric, array
             let t = tensor::times(stress, normal);
             let c = law.speeds(f, normal);
             let values = [f[0], f[1], f[2], f[3], sum[4], sum[5], t[0], t[1], c[0], c[1]];
-            let out = &mut traces[(face * m + point) * TRACE..(face * m + point + 1) * TRACE];
-            for (value, out) in values.into_iter().zip(out) {
+            let out = &mut traces[(face * m + point) * W..(face * m + point + 1) * W];
+            for (value, out) in values.into_iter().zip(&mut out[..TRACE]) {
                 value.store(out);
+            }
+            if W > TRACE {
+                store_array(tensor::times(stress, tangent(normal)), &mut out[TRACE..W]);
             }
         }
     }

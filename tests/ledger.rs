@@ -1,0 +1,218 @@
+//! The balance of energy as a user finds it: `ledger.csv` and `summary.json` of whole runs.
+
+mod runs;
+
+use runs::{Outcome, run};
+use std::path::PathBuf;
+
+const METHODS: [&str; 3] = ["ader-dgmpm", "ader-dgfem", "rk-dgfem"];
+
+/// A scene of the unit square, or of `mesh`, with what differs; the ledger has a row for each step.
+fn scene(name: &str, law: &str, mesh: &str, conditions: [&str; 4], more: &str) -> PathBuf {
+    let groups = ["left", "right", "bottom", "top"];
+    let condition = |(group, condition): (&&str, &str)| format!("[[boundary]]\ngroup = \"{group}\"\n{condition}\n");
+    let boundary: String = groups.iter().zip(conditions).map(condition).collect();
+    let text = format!(
+        "[mesh]\nrectangle = {{ {mesh} }}\n[[material]]\nlaw = \"{law}\"\nyoung = 2e11\npoisson = 0.3\n\
+         density = 7800.0\n{boundary}{more}\n[[output]]\nkind = \"ledger\"\n"
+    );
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("ledger");
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join(format!("{name}.toml"));
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn of(scene: &std::path::Path, method: &str, degree: usize, sets: &[&str]) -> Outcome {
+    let (method, degree) = (format!("scheme.method={method}"), format!("scheme.degree={degree}"));
+    run(scene.to_str().unwrap(), &[&[method.as_str(), &degree], sets].concat())
+}
+
+fn part(outcome: &Outcome, key: &str) -> f64 {
+    outcome.summary["balance"][key].as_f64().unwrap()
+}
+
+fn energy(outcome: &Outcome) -> f64 {
+    outcome.number("kinetic_energy") + outcome.number("strain_energy")
+}
+
+const BOX: &str = "[initial]\nvelocity = [\"300*sin(pi*x)*cos(pi*y)\", \"-150*cos(pi*x)*sin(pi*y)\"]\n\
+                   [scheme]\nmethod = \"rk-dgfem\"\ndegree = 2\n[time]\nend = 1.5e-4";
+const WALL: &str = "kind = \"wall\"";
+const FREE: &str = "kind = \"free\"";
+
+/// Remainders of the smooth box over the energy on 8 x 8 and 16 x 16 cells, h and dt together, and measured orders.
+/// ADER: of the order N + 1 of the scheme and above, since its predictor sees no jumps; RK2, RK4, RK4: the error of the
+/// tableau, which meets the jumps' order 2N + 1 first. Bounds: a quarter of an order below what was measured.
+#[test]
+fn the_remainder_falls_under_refinement_with_the_order_of_the_scheme() {
+    let scene = scene("box", "neo-hookean", "size = [1.0, 1.0], cells = [8, 8]", [WALL; 4], BOX);
+    let orders = [[2.73, 2.79, 4.65], [2.73, 2.81, 4.73], [2.77, 5.04, 6.98]];
+    for (method, orders) in METHODS.into_iter().zip(orders) {
+        for (degree, measured) in (1..=3).zip(orders) {
+            let remainder = |cells: usize| {
+                let set = format!("mesh.rectangle.cells=[{cells},{cells}]");
+                let outcome = of(&scene, method, degree, &[&set, "output.0.every_steps=1000"]);
+                // Walls at rest do no work, and there is no source.
+                assert_eq!((part(&outcome, "boundary_work"), part(&outcome, "source_work")), (0.0, 0.0));
+                (part(&outcome, "remainder") / energy(&outcome)).abs()
+            };
+            let (coarse, fine) = (remainder(8), remainder(16));
+            let order = (coarse / fine).log2();
+            println!("{method} S{degree}: {coarse:.3e} {fine:.3e} order {order:.2}");
+            assert!(order > measured - 0.25, "{method} S{degree}: {coarse:e} {fine:e} order {order:.2}");
+        }
+    }
+}
+
+/// The paper's impact on 15 x 15 cells until the wave has come back. What is lost at faces and at the boundary only
+/// grows, step by step. The projection is of first order in what it removes and may give: it does in its first steps, and
+/// with RK in 51 of 380; it takes far more. Measured, of E(0): faces .0194, .0191, .0135, boundary .0172, .0172, .0099,
+/// projection 6.7e-4, 6.6e-4, 1.8e-4, of which it gave 2.8e-6, 2.9e-6, 1.6e-5.
+#[test]
+fn in_the_impact_jumps_only_dissipate_and_the_projection_takes_more_than_it_gives() {
+    for method in METHODS {
+        let sets = [
+            "mesh.rectangle={size=[3.0,3.0],cells=[15,15]}",
+            &format!("scheme.method={method}"),
+            "time.end=1e-3",
+            "output=[{kind=\"ledger\"}]",
+        ];
+        let outcome = run("square_impact.toml", &sets);
+        let ledger = outcome.ledger();
+        let total = ledger.column("total_energy");
+        let mut all = 0.0;
+        for (cause, may_give) in [("flux", 0.0), ("boundary", 0.0), ("curl", 0.18)] {
+            let lost = ledger.column(&format!("{cause}_dissipation"));
+            let end = *lost.last().unwrap();
+            println!("{method} {cause}: {:.4e} of E(0)", end / total[0]);
+            assert!(lost.len() > 300 && end > 1e-4 * total[0], "{method} {cause}");
+            // Jumps are squares: not even rounding there. The projection: twice the measured share, .089.
+            let given: f64 = lost.windows(2).map(|pair| (pair[0] - pair[1]).max(0.0)).sum();
+            assert!(given <= may_give * end, "{method} {cause}: {given:e} of {end:e}");
+            all += end;
+        }
+        let remainder = *ledger.column("remainder").last().unwrap();
+        println!("{method} remainder: {:.4e} of E(0)", remainder / total[0]);
+        // The columns add up: E = E(0) - lost + remainder, to the rounding of numbers of size E.
+        let closed = total[0] - all + remainder;
+        assert!((closed / total.last().unwrap() - 1.0).abs() < 1e-14, "{method}");
+    }
+}
+
+/// A pulse of traction t(t) at the right end of a strip, linear law: until it reaches the left end v = t/(rho0 c_p) at
+/// the right end exactly, so that the work is width times int t^2/(rho0 c_p) dt = .3 A^2 T 3/8 / (rho0 c_p).
+#[test]
+fn the_work_of_a_pulse_of_traction_is_that_of_the_plane_wave_and_goes_into_the_body() {
+    let pulse = "kind = \"traction\"\nvalue = [\"1e8*sin(pi*t/1e-4)^2\", \"0\"]";
+    let symmetry = "kind = \"symmetry\"";
+    let more = "[scheme]\nmethod = \"rk-dgfem\"\ndegree = 2\n[time]\nend = 1e-4";
+    let mesh = "size = [1.0, 0.3], cells = [20, 6]";
+    let scene = scene("pulse", "linear-elastic", mesh, [FREE, pulse, symmetry, symmetry], more);
+    let exact = 0.3 * 1e16 * 1e-4 * 0.375 / (7800.0 * 5875.097);
+    // Twice what was measured: work -4.5e-5 (ADER), -8e-9 (RK); remainder -1.03e-4, 9e-8.
+    let ader = [9e-5, 2e-4];
+    for (method, [of_work, of_remainder]) in METHODS.into_iter().zip([ader, ader, [1.6e-8, 2e-7]]) {
+        let outcome = of(&scene, method, 2, &[]);
+        let (work, remainder) = (part(&outcome, "boundary_work"), part(&outcome, "remainder"));
+        let given = energy(&outcome);
+        println!("{method}: {:e}, {:e}, {:e}", work / exact - 1.0, given / exact - 1.0, remainder / exact);
+        assert!((work / exact - 1.0).abs() < of_work, "{method}: {work:e} {exact:e}");
+        assert!(remainder.abs() < of_remainder * exact, "{method}: {remainder:e}");
+        // The body has it all, but for what 20 cells a metre lose of the pulse: measured 1.7e-4 and 2.3e-5.
+        assert!((given / exact - 1.0).abs() < 3.5e-4, "{method}: {given:e} {exact:e}");
+    }
+}
+
+/// A free body that shakes while it falls: source work = rho0 b . displacement of the centre, which no inner force
+/// moves: V t + b t^2/2.
+#[test]
+fn the_work_of_gravity_is_weight_times_displacement_of_the_centre() {
+    let more = "[initial]\nvelocity = [\"30*sin(pi*x)*cos(pi*y)\", \"-100 - 15*cos(pi*x)\"]\n\
+                [[source]]\nkind = \"gravity\"\nvalue = [\"0\", \"-1e5\"]\n\
+                [scheme]\nmethod = \"rk-dgfem\"\ndegree = 2\n[time]\nend = 3e-4";
+    let scene = scene("gravity", "neo-hookean", "size = [1.0, 1.0], cells = [8, 8]", [FREE; 4], more);
+    let t = 3e-4;
+    let exact = 7800.0 * 1e5 * (100.0 * t + 1e5 * t * t / 2.0);
+    for method in METHODS {
+        let outcome = of(&scene, method, 2, &[]);
+        let work = part(&outcome, "source_work") / exact - 1.0;
+        // Rounding of sums over 576 nodes and 100 steps and more; measured up to 7e-15.
+        assert!(work.abs() < 1e-13, "{method}: {work:e}");
+        // Time integration: measured 4.3e-5.
+        assert!(part(&outcome, "remainder").abs() < 9e-5 * exact, "{method}");
+        // A free edge has t* = 0.
+        assert_eq!(part(&outcome, "boundary_work"), 0.0);
+    }
+}
+
+/// A free square spins by 400 m/s at its edges, about one turn. Linear momentum is kept to rounding by all methods.
+/// Angular momentum is not in (F, p): its change is measured as 3.9e-5, 4.9e-6 (ADER, 4 x 4 and 8 x 8 cells, third
+/// order) and 1.3e-8, 9.3e-10 (RK4). The bounds are twice that.
+#[test]
+fn a_free_spinning_square_keeps_its_momenta() {
+    let more = "[initial]\nvelocity = [\"-800*(y-0.5)\", \"800*(x-0.5)\"]\n\
+                [scheme]\nmethod = \"rk-dgfem\"\ndegree = 2\n[time]\nend = 7.854e-3";
+    let scene = scene("spin", "neo-hookean", "size = [1.0, 1.0], cells = [4, 4]", [FREE; 4], more);
+    for (method, bounds) in METHODS.into_iter().zip([[8e-5, 1e-5], [8e-5, 1e-5], [2.7e-8, 2e-9]]) {
+        let changes = [4, 8].map(|cells| {
+            let set = format!("mesh.rectangle.cells=[{cells},{cells}]");
+            let outcome = of(&scene, method, 2, &[&set, "output.0.every_steps=100"]);
+            let of = |key: &str, k: usize| outcome.summary[key][k].as_f64().unwrap();
+            // rho0 800 /s times the polar moment of the square, 1/6 m^4.
+            assert!((of("angular_momentum", 0) / (7800.0 * 800.0 / 6.0) - 1.0).abs() < 1e-14);
+            for k in 0..2 {
+                // Rounding of 2000 steps and more on numbers of rho0 v = 3e6; measured 6e-10.
+                assert!(of("momentum", k).abs() < 1e-8, "{method}: {:?}", outcome.summary["momentum"]);
+            }
+            assert!(outcome.number("total_energy_ratio") < 1.0, "{method}");
+            (of("angular_momentum", 1) / of("angular_momentum", 0) - 1.0).abs()
+        });
+        println!("{method}: {changes:?}");
+        assert!(changes[0] < bounds[0] && changes[1] < bounds[1], "{method}: {changes:?}");
+        assert!(changes[0] > 6.0 * changes[1], "{method}: {changes:?}");
+    }
+}
+
+/// What costs is asked for: without the table, or with `balance = false`, nothing of the balance is there.
+#[test]
+fn the_balance_is_there_only_where_a_ledger_asks_for_it_and_changes_no_energy() {
+    let scene = scene("asked", "neo-hookean", "size = [1.0, 1.0], cells = [4, 4]", [WALL; 4], BOX);
+    let columns = |outcome: &Outcome| {
+        let text = std::fs::read_to_string(outcome.path().join("ledger.csv")).unwrap();
+        text.lines().next().unwrap().split(',').map(str::to_owned).collect::<Vec<_>>()
+    };
+    let always = "step t dt kinetic_energy strain_energy total_energy momentum_1 momentum_2 min_j max_curl_f c_max";
+    let more =
+        "boundary_work source_work flux_dissipation boundary_dissipation curl_dissipation remainder angular_momentum";
+    for method in METHODS {
+        let on = of(&scene, method, 2, &[]);
+        assert_eq!(columns(&on).join(" "), format!("{always} {more}"));
+        for off in ["output.0.balance=false", "output=[]"] {
+            let off = of(&scene, method, 2, &[off]);
+            assert_eq!(columns(&off).join(" "), always);
+            assert!(off.summary["balance"].is_null() && off.summary["angular_momentum"].is_null());
+            for key in ["kinetic_energy", "strain_energy", "min_j", "max_curl_f"] {
+                assert_eq!(on.number(key).to_bits(), off.number(key).to_bits(), "{method} {key}");
+            }
+        }
+        // The last row and the summary say the same.
+        let (ledger, last) = (on.ledger(), |column: Vec<f64>| *column.last().unwrap());
+        for key in more.split(' ').filter(|key| *key != "angular_momentum") {
+            assert_eq!(last(ledger.column(key)), part(&on, key), "{method} {key}");
+        }
+        assert_eq!(last(ledger.column("angular_momentum")), on.summary["angular_momentum"][1].as_f64().unwrap());
+    }
+}
+
+#[test]
+fn balance_is_a_key_of_the_ledger_alone() {
+    let scene = scene("key", "neo-hookean", "size = [1.0, 1.0], cells = [4, 4]", [WALL; 4], BOX);
+    let load = |set: &str| dgmpm::scene::Scene::load(&scene, &[set.to_owned()]);
+    assert!(load("output.0.balance=true").unwrap().wants_displacement());
+    assert!(!load("output.0.balance=false").unwrap().wants_displacement());
+    for wrong in ["output.0.balance=1", "output.0={kind=\"fields\", at=[0.0], balance=true}"] {
+        let message = load(wrong).unwrap_err().to_string();
+        assert!(message.contains("balance"), "{wrong}: {message}");
+    }
+}
