@@ -202,7 +202,9 @@ mod tests {
     }
 
     /// Laws, states, and which of the two waves are shocks.
-    fn cases() -> Vec<([Law; 2], [[f64; 2]; 2], [bool; 2])> {
+    type Case = ([Law; 2], [[f64; 2]; 2], [bool; 2]);
+
+    fn cases() -> Vec<Case> {
         vec![
             ([steel(), aluminium()], [[1.0, 400.0], [1.0, 0.0]], [true, true]),
             ([steel(), aluminium()], [[0.966, 200.0], [1.0, 0.0]], [false, true]),
