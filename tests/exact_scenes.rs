@@ -2,7 +2,9 @@
 
 mod runs;
 
+use dgmpm::scene::Scene;
 use runs::run;
+use std::path::Path;
 
 #[test]
 fn scenes_with_an_exact_solution_report_small_errors() {
@@ -35,4 +37,29 @@ fn an_impact_is_measured_against_its_exact_shock() {
     let l1 = run("bar.toml", &sets).summary["errors"]["velocity"]["l1"].as_f64().unwrap();
     // v is wrong by some of 200 m/s in the cells at the front, of .3 m^2 in all; most of the body has none.
     assert!(l1 > 0.0 && l1 < 1.0, "{l1}");
+}
+
+/// The message of `meshes/riemann.toml` with overrides, from the scene or from its mesh.
+fn refusal(sets: &[&str]) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/riemann.toml");
+    let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+    let result = Scene::load(&path, &sets).and_then(|scene| scene.build_mesh());
+    let error = result.expect_err("a scene that has no exact solution");
+    assert_eq!(error.exit_code(), 2, "{error}");
+    error.to_string()
+}
+
+#[test]
+fn materials_that_a_solution_does_not_take_or_has_elsewhere_are_refused() {
+    for (sets, words) in [
+        // The first material on the right, the interface inside of a material and inside of a cell.
+        (&["material.0.group=aluminium", "material.1.group=steel"][..], "not of the material"),
+        (&["exact.interface=1.6"], "not of the material"),
+        (&["exact.interface=1.51"], "not of the material"),
+        (&["exact.left_velocity=1e9"], "press a material to nothing"),
+        (&["exact={kind=\"wall-impact\"}"], "2 materials, \"wall-impact\" takes 1"),
+    ] {
+        let message = refusal(sets);
+        assert!(message.contains(words), "{sets:?}: {message}");
+    }
 }

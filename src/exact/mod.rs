@@ -6,6 +6,7 @@ mod dual;
 mod errors;
 mod linear_bar;
 mod manufactured;
+mod riemann;
 mod simple_wave;
 mod vortex;
 mod wall_impact;
@@ -14,6 +15,7 @@ pub use dual::Dual;
 pub use errors::{Errors, Norms, Values, compare, errors};
 pub use linear_bar::LinearBar;
 pub use manufactured::Manufactured;
+pub use riemann::Riemann;
 pub use simple_wave::SimpleWave;
 pub use vortex::Vortex;
 pub use wall_impact::WallImpact;
@@ -40,6 +42,11 @@ pub trait Exact: Send + Sync {
     fn until(&self) -> f64 {
         f64::INFINITY
     }
+
+    /// The number of the law that holds at X, in a solution of several materials.
+    fn material(&self, _x: [f64; 2]) -> usize {
+        0
+    }
 }
 
 /// The body force of an exact solution, as a source.
@@ -60,6 +67,13 @@ fn acceleration_of_stress(law: &Law, slopes: [[Dual; 4]; 2]) -> [f64; 2] {
 /// The law's c_p (m/s) along X1 under uniaxial F11.
 fn uniaxial_speed(law: &Law, f11: f64) -> f64 {
     law.speeds([f11, 0.0, 0.0, 1.0], [1.0, 0.0])[0]
+}
+
+/// int c dF11 between two values of F11, m/s, by a rule on [0, 1].
+fn speed_integral(law: &Law, rule: &(Vec<f64>, Vec<f64>), [from, to]: [f64; 2]) -> f64 {
+    let points = rule.0.iter().zip(&rule.1);
+    let mean: f64 = points.map(|(s, w)| w * uniaxial_speed(law, from + s * (to - from))).sum();
+    mean * (to - from)
 }
 
 /// The zero of a function with opposite signs at the ends, to the last bit that bisection can tell.

@@ -26,7 +26,17 @@ fn cases() -> Vec<Case> {
     let ring = |i: usize| [0.8 + 0.02 * i as f64, 0.7 * i as f64];
     let annulus = (0..20).map(ring).map(|[r, a]| [1.5 + r * a.cos(), 1.5 + r * a.sin()]).collect();
     let linear = Law::Linear(LinearElastic::new(2e11, 0.3, 7800.0));
+    let fans = [[0.9, -600.0], [0.95, 600.0]];
     vec![
+        Case {
+            // In the fans, X1 from .882 to .919 and from 2.081 to 2.102, and on all sides of them.
+            name: "fans",
+            exact: Box::new(Riemann::new(&[steel()], fans, 1.5).unwrap()),
+            law: steel(),
+            points: [0.87, 0.89, 0.91, 1.2, 1.6, 2.07, 2.085].map(|x| [x, 0.0]).to_vec(),
+            times: vec![1e-4],
+            step: [1e-5, 1e-9],
+        },
         Case {
             name: "simple wave",
             exact: Box::new(SimpleWave::new(steel(), 0.1, 0.75, 0.12)),

@@ -54,6 +54,7 @@ impl Scene {
             Source::File(path) => read_mesh(&self.resolve(path))?,
         };
         self.check_groups(&mesh.groups, &mesh.edge_groups)?;
+        self.check_exact_materials(&mesh)?;
         Ok(mesh)
     }
 

@@ -3,8 +3,9 @@
 use super::Scene;
 use super::reader::{Check, FINITE, POSITIVE, Reader};
 use crate::error::Result;
-use crate::exact::{Exact as Solution, LinearBar, Manufactured, SimpleWave, Vortex, WallImpact};
+use crate::exact::{Exact as Solution, LinearBar, Manufactured, Riemann, SimpleWave, Vortex, WallImpact};
 use crate::material::Law;
+use crate::mesh::{Mesh, map};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -19,8 +20,8 @@ pub struct Exact {
     pub initial: bool,
 }
 
-/// Parameters by name and the law to a solution.
-type Build = fn(&dyn Fn(&str) -> f64, Law) -> Arc<dyn Solution>;
+/// Parameters by name and the laws, as many as the entry takes, to a solution; None: there is none.
+type Build = fn(&dyn Fn(&str) -> f64, &[Law]) -> Option<Arc<dyn Solution>>;
 
 /// A solution and its parameters.
 #[derive(Debug)]
@@ -31,6 +32,8 @@ pub struct Entry {
     parameters: &'static [(&'static str, f64, Check)],
     /// Whether it holds for a linear law only.
     linear: bool,
+    /// How many materials it takes at most.
+    materials: usize,
     build: Build,
 }
 
@@ -44,25 +47,32 @@ pub const SOLUTIONS: &[Entry] = &[
         name: "simple-wave",
         parameters: &[("amplitude", 0.1, BELOW_1), CENTRE, WIDTH],
         linear: false,
-        build: |of, law| Arc::new(SimpleWave::new(law, of("amplitude"), of("centre"), of("width"))),
+        materials: 1,
+        build: |of, laws| Some(Arc::new(SimpleWave::new(laws[0].clone(), of("amplitude"), of("centre"), of("width")))),
     },
     Entry {
         name: "wall-impact",
         parameters: &[("speed", 200.0, POSITIVE)],
         linear: false,
-        build: |of, law| Arc::new(WallImpact::new(&law, of("speed"))),
+        materials: 1,
+        build: |of, laws| Some(Arc::new(WallImpact::new(&laws[0], of("speed")))),
     },
     Entry {
         name: "linear-bar",
         parameters: &[("length", 3.0, POSITIVE), ("amplitude", 1e-3, BELOW_1), CENTRE, WIDTH],
         linear: true,
-        build: |of, law| Arc::new(LinearBar::new(&law, of("length"), of("amplitude"), of("centre"), of("width"))),
+        materials: 1,
+        build: |of, laws| {
+            let (length, amplitude) = (of("length"), of("amplitude"));
+            Some(Arc::new(LinearBar::new(&laws[0], length, amplitude, of("centre"), of("width"))))
+        },
     },
     Entry {
         name: "manufactured",
         parameters: &[("amplitude", 0.05, BELOW_1), ("length", 1.0, POSITIVE)],
         linear: false,
-        build: |of, law| Arc::new(Manufactured::new(law, of("amplitude"), of("length"))),
+        materials: 1,
+        build: |of, laws| Some(Arc::new(Manufactured::new(laws[0].clone(), of("amplitude"), of("length")))),
     },
     Entry {
         name: "vortex",
@@ -74,9 +84,26 @@ pub const SOLUTIONS: &[Entry] = &[
             ("period", 1.0, POSITIVE),
         ],
         linear: false,
-        build: |of, law| {
+        materials: 1,
+        build: |of, laws| {
             let centre = [of("centre_x"), of("centre_y")];
-            Arc::new(Vortex::new(law, centre, of("radius"), of("amplitude"), of("period")))
+            Some(Arc::new(Vortex::new(laws[0].clone(), centre, of("radius"), of("amplitude"), of("period"))))
+        },
+    },
+    Entry {
+        name: "riemann",
+        parameters: &[
+            ("interface", 1.5, FINITE),
+            ("left_stretch", 1.0, POSITIVE),
+            ("left_velocity", 0.0, FINITE),
+            ("right_stretch", 1.0, POSITIVE),
+            ("right_velocity", 0.0, FINITE),
+        ],
+        linear: false,
+        materials: 2,
+        build: |of, laws| {
+            let states = [[of("left_stretch"), of("left_velocity")], [of("right_stretch"), of("right_velocity")]];
+            Some(Arc::new(Riemann::new(laws, states, of("interface"))?))
         },
     },
 ];
@@ -98,21 +125,45 @@ pub(super) fn exact(table: Option<&mut Reader>, initial: bool) -> Result<Option<
 }
 
 impl Scene {
-    /// Whether the exact solution fits law and end time.
+    /// Whether the exact solution fits materials and end time.
     pub(super) fn check_exact(&self) -> Result<()> {
-        let Some((entry, solution)) = self.entry().zip(self.build_exact()) else { return Ok(()) };
-        if self.materials.len() > 1 {
-            let remedy = "an exact solution is that of one material: leave one [[material]]";
-            return Err(self.error("exact.kind", "the scene has several materials", remedy));
+        let Some(entry) = self.entry() else { return Ok(()) };
+        let (count, name) = (self.materials.len(), entry.name);
+        if count > entry.materials {
+            let what = format!("the scene has {count} materials, \"{name}\" takes {}", entry.materials);
+            return Err(self.error("exact.kind", what, "leave out a [[material]], or [exact]"));
         }
-        if entry.linear && self.materials[0].law != "linear-elastic" {
-            let what = format!("\"{}\" holds for a linear law only", entry.name);
+        if entry.linear && self.materials.iter().any(|material| material.law != "linear-elastic") {
+            let what = format!("\"{name}\" holds for a linear law only");
             return Err(self.error("exact.kind", what, "give the material law = \"linear-elastic\""));
         }
+        let Some(solution) = self.build_exact() else {
+            let what = format!("\"{name}\" has no solution: the impact would press a material to nothing");
+            return Err(self.error("exact.kind", what, "lower the difference of the velocities"));
+        };
         if self.end >= solution.until() {
-            let what =
-                format!("\"{}\" is a solution until {:.6e} s only: then it breaks", entry.name, solution.until());
+            let what = format!("\"{name}\" is a solution until {:.6e} s only: then it breaks", solution.until());
             return Err(self.error("time.end", what, "end the run before"));
+        }
+        Ok(())
+    }
+
+    /// Whether the materials stand in the mesh where the exact solution has them: the first `[[material]]` is its first.
+    pub(super) fn check_exact_materials(&self, mesh: &Mesh) -> Result<()> {
+        let solution = if self.materials.len() > 1 { self.build_exact() } else { None };
+        let Some(solution) = solution else { return Ok(()) };
+        for (cell, material) in self.material_of_cells(mesh).into_iter().enumerate() {
+            let corners = mesh.corners(cell);
+            // Just inside of the corners: on an edge both materials are right.
+            let inside = [[0.01, 0.01], [0.99, 0.01], [0.99, 0.99], [0.01, 0.99]].map(|xi| map::position(&corners, xi));
+            if let Some([x, y]) = inside.into_iter().find(|x| solution.material(*x) != material) {
+                let number = mesh.number(cell);
+                let what =
+                    format!("cell {number} at ({x:.6}, {y:.6}) is not of the material that the solution has there");
+                let remedy =
+                    "let the cells of the first [[material]] end at the interface, where those of the second begin";
+                return Err(self.error("exact.kind", what, remedy));
+            }
         }
         Ok(())
     }
@@ -124,8 +175,9 @@ impl Scene {
 
     /// The exact solution that the scene names.
     pub fn build_exact(&self) -> Option<Arc<dyn Solution>> {
-        let (exact, law) = (self.exact.as_ref()?, self.build_laws().into_iter().next()?);
+        let (exact, laws) = (self.exact.as_ref()?, self.build_laws());
         let parameter = |name: &str| exact.parameters.get(name).copied().unwrap_or(f64::NAN);
-        Some((self.entry()?.build)(&parameter, law))
+        // A scene has at least one material, and every law of the list is built.
+        if laws.is_empty() { None } else { (self.entry()?.build)(&parameter, &laws) }
     }
 }
