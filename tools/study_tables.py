@@ -7,7 +7,7 @@ from datetime import date
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PROBLEMS = ["simple_wave", "smooth_box", "square_impact"]
+PROBLEMS = ["simple_wave", "smooth_box", "wall_impact", "square_impact"]
 BEGIN, END = "<!-- study:begin -->", "<!-- study:end -->"
 
 
@@ -50,7 +50,7 @@ def main(folder: Path) -> None:
     table = (folder / "smooth_box" / "table.md").read_text().strip()
     title = json.loads((folder / "smooth_box" / "study.json").read_text())["title"]
     short = (
-        f"*{title}; one thread.* {made} The simple wave, the impact and the answers in words are in "
+        f"*{title}; one thread.* {made} The simple wave, two impacts and the answers in words are in "
         f"[docs/cost.md](docs/cost.md).\n\n{table}\n\n"
         "![error over CPU seconds](docs/img/study_smooth_box.svg)"
     )
