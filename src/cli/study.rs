@@ -17,9 +17,12 @@ pub struct Args {
     /// Methods
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_value = "rk-dgfem,ader-dgfem,ader-dgmpm")]
     methods: Vec<String>,
-    /// Degrees N = N_T
+    /// Degrees N
     #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "1,2,3,4")]
     degrees: Vec<usize>,
+    /// Degrees N_T of each N [default: N alone]
+    #[arg(long, value_name = "N,..", value_delimiter = ',')]
+    time_degrees: Vec<usize>,
     /// Cells per direction over those of the scene; whole numbers where its mesh is a file [default: 0.25,0.5,1, of a
     /// file 1,2]
     #[arg(long, value_name = "R,..", value_delimiter = ',', allow_negative_numbers = true)]
@@ -129,7 +132,13 @@ impl Args {
                     Method::AderDgmpm if !self.layouts.is_empty() => self.layouts.iter().cloned().map(Some).collect(),
                     _ => vec![None],
                 };
-                all.extend(layouts.into_iter().map(|layout| Series { method, degree, layout }));
+                let own = [degree];
+                let times = if self.time_degrees.is_empty() { &own[..] } else { &self.time_degrees };
+                for &time_degree in times {
+                    let series =
+                        |layout: &Option<String>| Series { method, degree, time_degree, layout: layout.clone() };
+                    all.extend(layouts.iter().map(series));
+                }
             }
         }
         // A misspelt layout or a degree beyond the range is an error of the command line, not of one case.

@@ -22,17 +22,20 @@ const SAFETY: f64 = 0.9;
 pub struct Series {
     /// The method.
     pub method: Method,
-    /// N = N_T.
+    /// N.
     pub degree: usize,
+    /// N_T.
+    pub time_degree: usize,
     /// Where the points of ADER-DGMPM stand; none: as the scene says.
     pub layout: Option<String>,
 }
 
 impl Series {
-    /// As in tables: `ader-dgmpm S2`, with the layout where the study varies it.
+    /// As in tables: `ader-dgmpm S2`, with T where N_T is another, and with the layout where the study varies it.
     pub fn name(&self) -> String {
+        let time = if self.time_degree == self.degree { String::new() } else { format!("T{}", self.time_degree) };
         let layout = self.layout.as_ref().map_or(String::new(), |layout| format!(" {layout}"));
-        format!("{} S{}{layout}", self.method.name(), self.degree)
+        format!("{} S{}{time}{layout}", self.method.name(), self.degree)
     }
 }
 
@@ -58,11 +61,11 @@ impl Case {
 
     /// The `--set` that make this case of the scene.
     pub fn sets(&self, scene: &Scene) -> Vec<String> {
-        let Series { method, degree, layout } = &self.series;
+        let Series { method, degree, time_degree, layout } = &self.series;
         let mut sets = vec![
             format!("scheme.method={}", method.name()),
             format!("scheme.degree={degree}"),
-            format!("scheme.time_degree={degree}"),
+            format!("scheme.time_degree={time_degree}"),
         ];
         sets.extend(layout.as_ref().map(|layout| format!("cloud.layout={layout}")));
         if let scene::Mesh::Rectangle { cells, .. } = scene.mesh {
@@ -253,4 +256,35 @@ pub(super) fn measure(
 /// min_e h_e, m.
 pub fn smallest_h(mesh: &Mesh) -> f64 {
     (0..mesh.cells.len()).map(|cell| map::h_e(&mesh.corners(cell))).fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_say_what_is_not_the_default() {
+        let series = Series { method: Method::AderDgmpm, degree: 3, time_degree: 3, layout: None };
+        assert_eq!(series.name(), "ader-dgmpm S3");
+        let series = Series { time_degree: 1, layout: Some("jitter".into()), ..series };
+        assert_eq!(series.name(), "ader-dgmpm S3T1 jitter");
+    }
+
+    #[test]
+    fn a_case_of_a_scene_is_made_by_its_overrides() {
+        let text = "[mesh]\nrectangle = { size = [3.0, 0.1], cells = [30, 1] }\n[[material]]\nlaw = \"linear-elastic\"\n\
+             young = 1.0\npoisson = 0.3\ndensity = 1.0\n[scheme]\nmethod = \"rk-dgfem\"\ndegree = 1\ncfl = 0.4\n[time]\nend = 1.0\n";
+        let walls =
+            ["left", "right", "bottom", "top"].map(|g| format!("[[boundary]]\ngroup = \"{g}\"\nkind = \"wall\"\n"));
+        let text = format!("{text}{}", walls.join(""));
+        let scene = Scene::parse(&text, std::path::Path::new("x.toml"), &[]).unwrap();
+        let series = Series { method: Method::AderDgmpm, degree: 3, time_degree: 1, layout: Some("gauss".into()) };
+        let case = Case { series, refinement: 0.5 };
+        // At least one cell in each direction.
+        assert_eq!((case.rectangle([30, 1]), case.cells(&scene, 30)), ([15, 1], 15));
+        let scene = scene.with(&case.sets(&scene)).unwrap();
+        assert_eq!((scene.scheme.method, scene.scheme.degree, scene.scheme.time_degree), (Method::AderDgmpm, 3, 1));
+        // The same share of every method's limit.
+        assert_eq!(scene.scheme.step, Step::Safety(SAFETY));
+    }
 }

@@ -8,9 +8,10 @@ use std::fmt::Write;
 
 /// Columns of `study.csv`. Errors are of F, v (m/s), P (Pa) at the end of the run; times in s, memory in MiB; `predicted_*`
 /// is what the coarser meshes of the series had let expect.
-pub const COLUMNS: [&str; 25] = [
+pub const COLUMNS: [&str; 26] = [
     "method",
     "degree",
+    "time_degree",
     "layout",
     "refinement",
     "cells",
@@ -54,8 +55,9 @@ pub fn csv(records: &[Record], head: &[String]) -> String {
     head.iter().for_each(|line| text += &format!("# {}\n", line.replace('\n', " ")));
     text += &format!("{},status\n", COLUMNS.join(","));
     for r in records {
-        let Series { method, degree, layout } = &r.case.series;
-        let mut row = vec![method.name().to_owned(), degree.to_string(), layout.clone().unwrap_or_default()];
+        let Series { method, degree, time_degree, layout } = &r.case.series;
+        let mut row = vec![method.name().to_owned(), degree.to_string(), time_degree.to_string()];
+        row.push(layout.clone().unwrap_or_default());
         row.push(r.case.refinement.to_string());
         row.extend([r.cells, r.dofs, r.steps].map(|n| n.to_string()));
         let dt = if r.steps > 0 { r.dt.map(|dt| format!("{dt:e}")) } else { Default::default() };
