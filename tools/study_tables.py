@@ -7,7 +7,7 @@ from datetime import date
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PROBLEMS = ["simple_wave", "smooth_box", "wall_impact", "square_impact"]
+PROBLEMS = ["simple_wave", "smooth_box", "wall_impact"]
 BEGIN, END = "<!-- study:begin -->", "<!-- study:end -->"
 
 
@@ -24,7 +24,7 @@ def answers(study: dict) -> str:
     lines = []
     for answer in study["answers"]:
         use, error = answer["use"], answer["for_error"]
-        asked = f"{error:.0%}" if error > 9e-3 else f"{error:.0e}"
+        asked = f"{100 * error:.3g} %" if error > 9e-6 else f"{error:.0e}"
         found = f"{use['cpu_seconds']:.2g} s (error {use['error']:.1e})"
         lines.append(f"- for an error of {asked}: {use['setting']} on {use['cells']} cells, {found}")
     return "\n".join(lines)
@@ -50,7 +50,7 @@ def main(folder: Path) -> None:
     table = (folder / "smooth_box" / "table.md").read_text().strip()
     title = json.loads((folder / "smooth_box" / "study.json").read_text())["title"]
     short = (
-        f"*{title}; one thread.* {made} The simple wave, two impacts and the answers in words are in "
+        f"*{title}; one thread.* {made} The simple wave, an impact and the answers in words are in "
         f"[docs/cost.md](docs/cost.md).\n\n{table}\n\n"
         "![error over CPU seconds](docs/img/study_smooth_box.svg)"
     )

@@ -19,25 +19,27 @@ pub fn front(records: &[Record]) -> Vec<usize> {
 /// The cheapest record for an error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
-    /// The error asked for, a power of ten.
+    /// The error asked for.
     pub error: f64,
     /// Index of the record.
     pub record: usize,
 }
 
-/// For each power of ten between the largest and the smallest error of the front, the cheapest record that has it.
+/// The cheapest record for each power of ten between the largest and the smallest error of the front; where these are
+/// less than two powers apart, as at a shock, for 1, 2, 3 and 5 times each power.
 pub fn answers(records: &[Record]) -> Vec<Answer> {
     let front = front(records);
     let errors: Vec<f64> = front.iter().filter_map(|&k| records[k].error()).collect();
-    let (Some(largest), Some(smallest)) = (errors.first(), errors.last()) else { return vec![] };
-    let powers = (smallest.log10().ceil() as i32..=largest.log10().floor() as i32).rev();
-    let cheapest = |power: i32| {
-        let error = 10_f64.powi(power);
+    let (Some(&largest), Some(&smallest)) = (errors.first(), errors.last()) else { return vec![] };
+    let steps: &[f64] = if largest / smallest < 100.0 { &[5.0, 3.0, 2.0, 1.0] } else { &[1.0] };
+    let powers = (smallest.log10().floor() as i32..=largest.log10().floor() as i32).rev();
+    let targets = powers.flat_map(|power| steps.iter().map(move |step| step * 10_f64.powi(power)));
+    let cheapest = |error: f64| {
         // The front goes from cheap to dear.
         let record = *front.iter().find(|&&k| records[k].error().is_some_and(|e| e <= error))?;
-        Some(Answer { error, record })
+        (error < largest).then_some(Answer { error, record })
     };
-    powers.filter_map(cheapest).collect()
+    targets.filter_map(cheapest).collect()
 }
 
 /// CPU seconds of a series for an error, by a straight line in logarithms between the two records around it; none where
@@ -87,6 +89,13 @@ mod tests {
         let answers = answers(&records());
         let found: Vec<(f64, usize)> = answers.iter().map(|a| ((1e9 * a.error).round() / 1e9, a.record)).collect();
         assert_eq!(found, [(0.1, 2), (0.01, 3)]);
+    }
+
+    #[test]
+    fn errors_that_lie_close_together_are_told_apart() {
+        let shock = [record(1, 1.0, 1.0, 9e-2), record(2, 1.0, 2.0, 4e-2), record(2, 2.0, 3.0, 2.5e-2)];
+        let found: Vec<(f64, usize)> = answers(&shock).iter().map(|a| (a.error, a.record)).collect();
+        assert_eq!(found, [(0.05, 1), (0.03, 2)]);
     }
 
     #[test]

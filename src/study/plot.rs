@@ -134,6 +134,12 @@ fn draw<B: DrawingBackend>(
         .axis_desc_style((FONT, 17))
         .draw()
         .map_err(text)?;
+    // A single decade has labels at its ends alone: name what lies between, inside of the chart.
+    if y.1 / y.0 < 11.0 {
+        let style = (FONT, 14).into_text_style(&area).color(&RGBColor(110, 110, 110));
+        let between = [2.0, 5.0].map(|k| Text::new(format!("{:.0e}", k * y.0), (x.0 * 1.03, k * y.0), style.clone()));
+        chart.draw_series(between).map_err(text)?;
+    }
     for (k, (series, points)) in lines.iter().enumerate() {
         let colour = COLOURS[series.degree.min(COLOURS.len() - 1)];
         let plain = ShapeStyle::from(colour).stroke_width(2);
