@@ -38,7 +38,7 @@ pub fn run(args: &Args) -> Result<()> {
     let body = args.files.body(&scene)?;
     let look = if args.force { vec![] } else { vec![args.out.as_path()] };
     let (operators, origin) = pipeline::operators(&scene, &body, &Store { look: &look, write: &args.out })?;
-    let scheme = pipeline::scheme(&scene, &body, operators);
+    let scheme = pipeline::scheme(&scene, &body, operators, Kernel::widest());
     let state = scene.initial_state(&body.mesh, &scheme)?;
     report(&scene, &body, &scheme, &state, settings)?;
     say(origin);
