@@ -23,3 +23,6 @@ pub use peaks::{Peaks, peaks};
 pub use setup::{Domain, Problem, Setup};
 pub use table::{Figures, oneline, report};
 pub use traffic::traffic;
+
+#[cfg(test)]
+mod tests;

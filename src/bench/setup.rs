@@ -41,6 +41,9 @@ pub struct Setup {
     pub sets: Vec<String>,
 }
 
+/// Bytes of a cell in the mesh, its links and blocks.
+const MESH: usize = 500;
+
 /// A setup that is ready to step.
 pub struct Problem {
     /// The mesh.
@@ -67,13 +70,8 @@ impl Setup {
     /// # Errors
     /// Bad input; a size that this machine's memory cannot hold.
     pub fn build(&self) -> Result<Problem> {
-        let mesh = match &self.domain {
-            Domain::Cells(cells) => mesh::rectangle([1.0, cells[1] as f64 / cells[0].max(1) as f64], *cells)?,
-            Domain::File(path) => wave::periodic(crate::scene::build::read_mesh(path)?, path)?,
-        };
-        let scene = self.scene(&mesh)?;
+        let (mesh, scene) = self.mesh()?;
         let settings = scene.settings()?;
-        self.check_memory(mesh.cells.len(), &scene)?;
         let cloud = scene.build_cloud(&mesh)?;
         let material = scene.material_of_cells(&mesh);
         let operators = Operators::build(&mesh, &scene.links(&mesh)?, &material, &scene.needs(&cloud))?;
@@ -87,8 +85,26 @@ impl Setup {
         Ok(Problem { mesh, material, points, scheme, start, wave, settings, h })
     }
 
+    /// The mesh, once it is known to fit, and the scene on it.
+    fn mesh(&self) -> Result<(Mesh, Scene)> {
+        match &self.domain {
+            Domain::Cells(cells) => {
+                let size = [1.0, cells[1] as f64 / cells[0].max(1) as f64];
+                let scene = self.scene([[0.0; 2], size])?;
+                self.check_memory(cells[0].saturating_mul(cells[1]), &scene)?;
+                Ok((mesh::rectangle(size, *cells)?, scene))
+            }
+            Domain::File(path) => {
+                let mesh = wave::periodic(crate::scene::build::read_mesh(path)?, path)?;
+                let scene = self.scene(wave::extent(&mesh))?;
+                self.check_memory(mesh.cells.len(), &scene)?;
+                Ok((mesh, scene))
+            }
+        }
+    }
+
     /// The scene; what the user names goes in as `--set`, so that messages are those of a run.
-    fn scene(&self, mesh: &Mesh) -> Result<Scene> {
+    fn scene(&self, extent: [[f64; 2]; 2]) -> Result<Scene> {
         let mut sets = vec![
             format!("scheme.method={}", self.method.name()),
             format!("scheme.degree={}", self.degree),
@@ -96,12 +112,12 @@ impl Setup {
         ];
         sets.extend(self.layout.as_ref().map(|layout| format!("cloud.layout={layout}")));
         sets.extend(self.sets.iter().cloned());
-        Scene::parse(&wave::scene(mesh), Path::new("bench.toml"), &sets)
+        Scene::parse(&wave::scene(extent), Path::new("bench.toml"), &sets)
     }
 
     /// Refuses what would not fit: a machine that swaps measures its disk.
     fn check_memory(&self, cells: usize, scene: &Scene) -> Result<()> {
-        let needed = self.bytes_per_cell(scene) * cells;
+        let needed = self.bytes_per_cell(scene).saturating_mul(cells);
         let available = available_memory();
         if available.is_some_and(|available| needed > available) {
             let gib = |bytes: usize| bytes as f64 / f64::from(1 << 30);
@@ -129,7 +145,7 @@ impl Setup {
         let geometry = 6 * n + 4 * m * TRACE + 6 * np;
         // One copy of each class while they are built, one in blocks.
         let own = 2 * (usize::from(random) * (2 * n * np + 2 * np * np) + usize::from(files) * 2 * n * n);
-        8 * (unknowns + geometry + own)
+        MESH + 8 * (unknowns + geometry + own)
     }
 }
 

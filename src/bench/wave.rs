@@ -22,17 +22,16 @@ const SPEED: f64 = 5875.097;
 /// Part of the length of the rectangle within which an edge lies on a side.
 const ON_SIDE: f64 = 1e-9;
 
-/// Smallest and largest coordinates.
-fn extent(mesh: &Mesh) -> [[f64; 2]; 2] {
+/// Smallest and largest coordinates, m.
+pub fn extent(mesh: &Mesh) -> [[f64; 2]; 2] {
     let fold = |start: f64, pick: fn(f64, f64) -> f64| {
         mesh.nodes.iter().fold([start; 2], |a, x| [pick(a[0], x[0]), pick(a[1], x[1])])
     };
     [fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// The scene on a mesh with the groups of a rectangle. (Its own rectangle only stands for that mesh.)
-pub fn scene(mesh: &Mesh) -> String {
-    let [low, high] = extent(mesh);
+/// The scene on a mesh with the groups and the extent of a rectangle. (Its own rectangle only stands for that mesh.)
+pub fn scene([low, high]: [[f64; 2]; 2]) -> String {
     let size = [high[0] - low[0], high[1] - low[1]];
     let (centre, width, end) = (low[0] + CENTRE * size[0], WIDTH * size[0], WAY * size[0] / SPEED);
     format!(

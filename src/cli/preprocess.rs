@@ -5,6 +5,7 @@ use super::print::{mebibytes, row, say, seconds, table};
 use super::{SceneArgs, keep};
 use crate::error::{Error, Result};
 use crate::io::operators_file;
+use crate::lane::Kernel;
 use crate::mesh::Mesh;
 use crate::operators::certificate::{Certificate, certify};
 use crate::operators::{Pool, Sampling};
