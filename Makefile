@@ -1,10 +1,12 @@
 # make demo     the paper's impact, from the mesh to the figures
 # make test     every test
-.PHONY: help setup build demo test clean
+# make bench    the speed of the step on this machine: tables and roofline of docs/performance.md
+.PHONY: help setup build demo test bench clean
 
 help:
 	@echo "make demo    install what is missing, build, run the paper's impact with all methods, draw its figures"
 	@echo "make test    install what is missing, run every test"
+	@echo "make bench   measure the speed (ten minutes): runs/bench/, docs/performance.md, docs/img/roofline.svg"
 	@echo "make build   the program: target/release/dgmpm"
 	@echo "make setup   only install what is missing (Debian packages, .venv)"
 	@echo "make clean   remove build results and runs; .venv stays"
@@ -20,6 +22,9 @@ demo: build
 
 test: setup
 	@tools/test.sh
+
+bench: build
+	@tools/bench.sh
 
 clean:
 	cargo clean
