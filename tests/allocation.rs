@@ -10,9 +10,9 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard};
 
-/// Counts what is asked of the system: in all threads, and in each for itself. (Tests run side by side in this program, so
-/// the first can be used by one test at a time only; see `all_threads`.)
+/// Counts what is asked of the system: in all threads, and in each for itself.
 struct Counting;
 
 static ALL: AtomicUsize = AtomicUsize::new(0);
@@ -143,8 +143,31 @@ fn on_one_thread(sets: &[&str], steps: usize) -> usize {
     })
 }
 
+/// Tests run side by side in this program: one at a time, so that the count of all threads is that of one test.
+static TURN: Mutex<()> = Mutex::new(());
+
+fn turn() -> MutexGuard<'static, ()> {
+    TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+#[test]
+fn steps_on_two_threads_allocate_no_more_than_the_queues_of_rayon() {
+    let _turn = turn();
+    for (name, sets) in CASES {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let seen = pool.install(|| {
+            let mut run = Run::warm(sets);
+            let before = ALL.load(Ordering::Relaxed);
+            (0..200).for_each(|_| run.step());
+            ALL.load(Ordering::Relaxed) - before
+        });
+        println!("{name}: {seen} allocations in 200 steps on two threads");
+    }
+}
+
 #[test]
 fn step_and_survey_of_a_warm_scheme_allocate_nothing_on_one_thread() {
+    let _turn = turn();
     for (name, sets) in CASES {
         assert_eq!(on_one_thread(sets, 20), 0, "{name}");
     }
@@ -152,6 +175,7 @@ fn step_and_survey_of_a_warm_scheme_allocate_nothing_on_one_thread() {
 
 #[test]
 fn the_counter_sees_what_the_first_step_and_a_vector_allocate() {
+    let _turn = turn();
     let before = OWN.get();
     drop(std::hint::black_box(vec![1.0; 100]));
     assert_eq!(OWN.get() - before, 1);
