@@ -1,9 +1,13 @@
+use super::campaign::SIZES;
+use super::chart::{Chart, Line, Marker};
+use super::summary::{self, Row};
 use super::*;
 use crate::lane::counted::{self, Counts, SLOTS};
 use crate::lane::{F8, Kernel, Lanes, Work, load_array};
 use crate::material::{LinearElastic, Material, NeoHookean};
 use crate::scene::Method;
 use crate::step::Phase;
+use crate::study::plot::save;
 
 fn setup(method: Method, degree: usize, layout: &str) -> Setup {
     Setup {
@@ -147,4 +151,41 @@ fn peaks_are_those_of_a_machine() {
     let peaks = peaks(Kernel::widest(), 1).unwrap();
     // From a slow laptop under load to a processor that does not exist yet.
     assert!((1e8..1e12).contains(&peaks.fma) && (1e8..1e12).contains(&peaks.triad), "{peaks:?}");
+}
+
+#[test]
+fn tables_hold_what_was_measured_and_leave_out_what_was_not() {
+    let setup = setup(Method::RkDgfem, 2, "gauss");
+    let problem = setup.build().unwrap();
+    let measured = measure(&problem, 1, Length::Steps(2)).unwrap();
+    let peaks = Peaks { fma: 4e10, triad: 2e10 };
+    let figures = Figures::new(&setup, &problem, measured.clone(), count(&setup).unwrap(), peaks);
+    let row = |variant, figures: Figures| Row { series: 0, variant, size: SIZES[0], runs: 1, best: 1.0, figures };
+    let twice = Measured { cpu: 2.0 * measured.cpu, ..measured.clone() };
+    let linear = Figures { measured: twice, ..figures.clone() };
+    let rows = [row("", figures), row("linear-elastic", linear)];
+    let text = summary::markdown(&rows);
+    let line = |title: &str| text.lines().skip_while(|line| !line.contains(title)).nth(2).unwrap_or_default();
+    assert_eq!(line("DoF-updates/s/core, 6e4"), format!("| rk-dgfem |  | {:.2e} |  |  |  |  |", measured.rate()));
+    assert_eq!(line("rate of the linear law"), "| rk-dgfem |  | 0.50 |  |  |  |  |");
+    assert!(!text.contains("two threads") && !text.contains("predictor: share") && text.contains("40.0 GFLOP/s"));
+    let csv = summary::csv(&rows);
+    // Names of phases have commas and stand in quotes.
+    let columns = |line: &str| line.split('"').step_by(2).map(|part| part.matches(',').count()).sum::<usize>();
+    assert!(csv.lines().all(|line| columns(line) == columns(csv.lines().next().unwrap())), "{csv}");
+    assert_eq!(csv.lines().count(), 3);
+}
+
+#[test]
+fn a_chart_is_drawn_and_an_empty_one_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = |marker| Line { name: format!("{marker:?}"), colour: 2, marker, points: vec![(1.0, 10.0), (5.0, 70.0)] };
+    let markers = [Marker::Bare, Marker::Circle, Marker::Triangle, Marker::Square, Marker::Cross];
+    let [title, x, y] = ["title", "x", "y"].map(str::to_owned);
+    let chart = Chart { title, x, y, lines: markers.map(line).to_vec() };
+    save(&chart, &folder.path().join("chart.svg")).unwrap();
+    let svg = std::fs::read_to_string(folder.path().join("chart.svg")).unwrap();
+    assert!(svg.starts_with("<svg") && markers.iter().all(|marker| svg.contains(&format!("{marker:?}"))));
+    let empty = Chart { lines: vec![], ..chart };
+    assert!(save(&empty, &folder.path().join("empty.png")).is_err());
 }
