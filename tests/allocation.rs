@@ -150,8 +150,9 @@ fn turn() -> MutexGuard<'static, ()> {
     TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
+/// Steals between two threads take no memory either: rayon's jobs live on the stack, its queues grow once.
 #[test]
-fn steps_on_two_threads_allocate_no_more_than_the_queues_of_rayon() {
+fn steps_on_two_threads_allocate_nothing_but_a_queue_that_grows() {
     let _turn = turn();
     for (name, sets) in CASES {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
@@ -161,7 +162,9 @@ fn steps_on_two_threads_allocate_no_more_than_the_queues_of_rayon() {
             (0..200).for_each(|_| run.step());
             ALL.load(Ordering::Relaxed) - before
         });
-        println!("{name}: {seen} allocations in 200 steps on two threads");
+        // Measured: 0. A thread that sleeps through the warm steps may take its first records of the queues' garbage
+        // collector later, a handful a thread; 200 steps that allocated would need 200 at least.
+        assert!(seen < 16, "{name}: {seen} allocations in 200 steps");
     }
 }
 

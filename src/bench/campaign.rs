@@ -50,24 +50,32 @@ pub struct Campaign<'a> {
 }
 
 impl Campaign<'_> {
-    /// Measures everything; `bench.csv` is kept after each batch, `tables.md` and the pictures come at the end.
+    /// Measures everything; the files are written anew after each batch.
     ///
     /// # Errors
     /// Files that cannot be written, a problem that cannot be built.
     pub fn run(&self) -> Result<()> {
         let mut rows = Vec::new();
-        let head = format!("# machine: {}\n", machine(self.kernel));
         for batch in self.batches() {
             self.measure(&batch, &mut rows)?;
-            write_text(&self.out.join("bench.csv"), &(head.clone() + &summary::csv(&rows)))?;
+            highest_peaks(&mut rows);
+            self.write(&rows)?;
         }
-        write_text(&self.out.join("tables.md"), &summary::markdown(&rows))?;
-        for (name, chart) in [("rates", rates(&rows)), ("roofline", roofline(&rows))] {
+        (self.say)(&format!("results in {}", self.out.display()));
+        Ok(())
+    }
+
+    fn write(&self, rows: &[Row]) -> Result<()> {
+        let head = format!("# machine: {}\n", machine(self.kernel));
+        write_text(&self.out.join("bench.csv"), &(head + &summary::csv(rows)))?;
+        write_text(&self.out.join("tables.md"), &summary::markdown(rows))?;
+        let charts = [("rates", rates(rows)), ("roofline", roofline(rows))];
+        // The first batches have nothing for the roofline.
+        for (name, chart) in charts.into_iter().filter(|(_, chart)| !chart.lines.is_empty()) {
             for ending in ["svg", "png"] {
                 save(&chart, &self.out.join(format!("{name}.{ending}")))?;
             }
         }
-        (self.say)(&format!("results in {}", self.out.display()));
         Ok(())
     }
 
@@ -140,14 +148,28 @@ impl Campaign<'_> {
             let (k, t) = (at / batch.threads.len(), at % batch.threads.len());
             runs.sort_by(|a, b| a.rate().total_cmp(&b.rate()));
             let best = runs[runs.len() - 1].rate();
+            let wall = runs.iter().map(|run| run.steps as f64 / run.wall).fold(0.0, f64::max);
             let (series, variant, setup) = &batch.setups[k];
             let median = runs[runs.len() / 2].clone();
             let figures = Figures::new(setup, &problems[k], median, flops[k], peaks[t]);
-            let row = Row { series: *series, variant, size: batch.size, runs: batch.runs, best, figures };
+            let row = Row { series: *series, variant, size: batch.size, runs: batch.runs, best, wall, figures };
             (self.say)(&summary::line(&row));
             rows.push(row);
         }
         Ok(())
+    }
+}
+
+/// A peak is the most that was seen: all rows of a number of threads get the highest of their batches.
+fn highest_peaks(rows: &mut [Row]) {
+    for threads in [1, 2] {
+        let of = |row: &&mut Row| row.figures.measured.threads == threads;
+        let highest = |peaks: Peaks, row: &mut Row| Peaks {
+            fma: peaks.fma.max(row.figures.peaks.fma),
+            triad: peaks.triad.max(row.figures.peaks.triad),
+        };
+        let all = rows.iter_mut().filter(of).fold(Peaks { fma: 0.0, triad: 0.0 }, highest);
+        rows.iter_mut().filter(of).for_each(|row| row.figures.peaks = all);
     }
 }
 
@@ -178,9 +200,12 @@ fn roofline(rows: &[Row]) -> Chart {
     let fma = rows.iter().map(|row| row.figures.peak()).fold(0.0, f64::max);
     let triad = rows.iter().map(|row| row.figures.triad()).fold(0.0, f64::max);
     // From a tenth of a flop a byte, through the ridge, to beyond every kernel.
-    let roof = if rows.is_empty() { vec![] } else { vec![(0.1, 0.1 * triad), (fma / triad, fma), (1000.0, fma)] };
-    let mut lines =
-        vec![Line { name: "triad, FMA (measured)".to_owned(), colour: 0, marker: Marker::Bare, points: roof }];
+    let roof = vec![(0.1, 0.1 * triad), (fma / triad, fma), (1000.0, fma)];
+    let mut lines = Vec::new();
+    if !rows.is_empty() {
+        let name = "triad, FMA (measured)".to_owned();
+        lines.push(Line { name, colour: 0, marker: Marker::Bare, points: roof });
+    }
     for row in rows {
         let (name, _, _, marker) = SERIES[row.series];
         let degree = row.figures.setup.degree;

@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::exact::errors;
 use crate::run::dofs;
 use crate::state::State;
+use crate::step::phase::PHASES;
 use crate::step::{Loss, Phases, Survey, Work};
 use cpu_time::ProcessTime;
 use std::time::{Duration, Instant};
@@ -40,7 +41,8 @@ pub struct Measured {
     pub cpu: f64,
     /// Seconds on the clock.
     pub wall: f64,
-    /// Seconds per phase, summed over threads.
+    /// Seconds per phase, summed over threads: those of the quietest step times the steps. (Phases are timed on the clock,
+    /// which runs on while others have the processor.)
     pub phases: Phases,
     /// Bytes of operators, state and work.
     pub bytes: usize,
@@ -72,6 +74,7 @@ struct Clocked<'a> {
     survey: Survey,
     next: Survey,
     work: Work,
+    quietest: Phases,
     steps: usize,
     cpu: Duration,
     wall: Duration,
@@ -92,6 +95,8 @@ impl Clocked<'_> {
         scheme.survey(&self.work.next, &self.work, &mut self.next)?;
         std::mem::swap(&mut self.state, &mut self.work.next);
         std::mem::swap(&mut self.survey, &mut self.next);
+        let phases = self.work.take_phases();
+        self.quietest.seconds.iter_mut().zip(phases.seconds).for_each(|(least, s)| *least = least.min(s));
         self.steps += 1;
         Ok(())
     }
@@ -119,6 +124,9 @@ impl Clocked<'_> {
     }
 }
 
+/// Before the first step.
+const UNKNOWN: Phases = Phases { seconds: [f64::INFINITY; PHASES] };
+
 /// Steps a problem on threads of its own. The first step, which meets new memory, is not timed.
 ///
 /// # Errors
@@ -129,7 +137,8 @@ pub fn measure(problem: &Problem, threads: usize, length: Length) -> Result<Meas
         let (survey, zero) = (Survey::default(), Duration::ZERO);
         let state = problem.start.clone();
         let next = survey.clone();
-        let mut clocked = Clocked { problem, state, survey, next, work, steps: 0, cpu: zero, wall: zero };
+        let mut clocked =
+            Clocked { problem, state, survey, next, work, quietest: UNKNOWN, steps: 0, cpu: zero, wall: zero };
         let mut end = None;
         let outcome = steps(&mut clocked, length, &mut end);
         outcome.map_err(|loss| unstable(&loss, &clocked.state))?;
@@ -143,19 +152,20 @@ fn steps(clocked: &mut Clocked, length: Length, end: &mut Option<State>) -> std:
     clocked.step()?;
     clocked.rewind()?;
     clocked.work.take_phases();
-    clocked.steps = 0;
+    (clocked.steps, clocked.quietest) = (0, UNKNOWN);
     while !clocked.pass(length)? {
         end.get_or_insert_with(|| clocked.state.clone());
-        // The survey of the start is booked as a phase, too: 1 in hundreds.
         clocked.rewind()?;
+        // The survey of the start belongs to no step.
+        clocked.work.take_phases();
     }
     Ok(())
 }
 
-fn finish(mut clocked: Clocked, threads: usize, end: Option<&State>) -> Measured {
+fn finish(clocked: Clocked, threads: usize, end: Option<&State>) -> Measured {
     let Problem { scheme, mesh, wave, material, points, .. } = clocked.problem;
     let error = errors(wave, mesh, scheme, end.unwrap_or(&clocked.state), material).standard;
-    let phases = clocked.work.take_phases();
+    let phases = Phases { seconds: clocked.quietest.seconds.map(|s| s * clocked.steps as f64) };
     let state = size_of_val(&clocked.state.u[..]);
     Measured {
         threads,

@@ -2,10 +2,11 @@
 
 use crate::error::{Error, Result};
 use crate::lane::{F8, Kernel, LANES, Lanes, Work};
+use cpu_time::ThreadTime;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::hint::black_box;
-use std::time::Instant;
+use std::time::Duration;
 
 /// Rates of all threads together.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,15 +65,17 @@ impl Work for Triad<'_> {
     }
 }
 
-/// The fastest of some runs, s.
-fn fastest(mut run: impl FnMut()) -> f64 {
-    let mut best = f64::INFINITY;
-    for _ in 0..RUNS {
-        let clock = Instant::now();
-        run();
-        best = best.min(clock.elapsed().as_secs_f64());
-    }
-    best
+/// The fastest of some runs, in CPU seconds of a thread (the mean of all threads): what others take of the machine in
+/// between is not the time of the run.
+fn fastest(mut run: impl FnMut() -> Duration) -> f64 {
+    (0..RUNS).map(|_| run()).min().unwrap_or_default().as_secs_f64() / rayon::current_num_threads() as f64
+}
+
+/// CPU time of this thread in `body`.
+fn clocked(body: impl FnOnce()) -> Duration {
+    let clock = ThreadTime::now();
+    body();
+    clock.elapsed()
 }
 
 /// Measures both on so many threads: about a second.
@@ -90,7 +93,12 @@ pub(super) fn pool(threads: usize) -> Result<ThreadPool> {
 }
 
 fn fma(kernel: Kernel) -> f64 {
-    let seconds = fastest(|| drop(rayon::broadcast(|_| black_box(kernel.run(Fma)))));
+    let one = || {
+        clocked(|| {
+            black_box(kernel.run(Fma));
+        })
+    };
+    let seconds = fastest(|| rayon::broadcast(|_| one()).into_iter().sum());
     (2 * SUMS * LANES * LENGTH * rayon::current_num_threads()) as f64 / seconds
 }
 
@@ -101,8 +109,9 @@ fn triad(kernel: Kernel) -> f64 {
     let chunk = blocks.div_ceil(rayon::current_num_threads());
     let seconds = fastest(|| {
         let parts = a.par_chunks_mut(chunk).zip(b.par_chunks(chunk).zip(c.par_chunks(chunk)));
-        parts.for_each(|(a, (b, c))| kernel.run(Triad { a, b, c }));
+        let all = parts.map(|(a, (b, c))| clocked(|| kernel.run(Triad { a, b, c }))).sum();
         black_box(&mut a);
+        all
     });
     (24 * NUMBERS) as f64 / seconds
 }

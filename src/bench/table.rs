@@ -102,7 +102,10 @@ pub fn report(figures: &Figures) -> Vec<String> {
         ),
         row("MiB", format!("{:.1}", m.bytes as f64 / f64::from(1 << 20))),
         row("L2 error", format!("{:.4e}", m.error)),
-        format!("  {:<26} {:>9} {:>7} {:>12} {:>9} {:>6}", "phase", "s", "share", "flops a cell", "GFLOP/s", "peak"),
+        format!(
+            "  {:<26} {:>9} {:>7} {:>12} {:>9} {:>6}",
+            "phase (quietest step)", "s", "share", "flops a cell", "GFLOP/s", "peak"
+        ),
     ];
     for phase in (0..PHASES).filter(|&phase| m.phases.seconds[phase] > 0.0) {
         let (seconds, rate) = (m.phases.seconds[phase], figures.phase_rate(phase));

@@ -160,7 +160,8 @@ fn tables_hold_what_was_measured_and_leave_out_what_was_not() {
     let measured = measure(&problem, 1, Length::Steps(2)).unwrap();
     let peaks = Peaks { fma: 4e10, triad: 2e10 };
     let figures = Figures::new(&setup, &problem, measured.clone(), count(&setup).unwrap(), peaks);
-    let row = |variant, figures: Figures| Row { series: 0, variant, size: SIZES[0], runs: 1, best: 1.0, figures };
+    let row =
+        |variant, figures: Figures| Row { series: 0, variant, size: SIZES[0], runs: 1, best: 1.0, wall: 1.0, figures };
     let twice = Measured { cpu: 2.0 * measured.cpu, ..measured.clone() };
     let linear = Figures { measured: twice, ..figures.clone() };
     let rows = [row("", figures), row("linear-elastic", linear)];
