@@ -9,6 +9,8 @@
 //! `array::map` there either): one that is not inlined is compiled without the processor's features, 4-6 times
 //! slower, silently. `tests/inlining.rs` looks for such calls in the binary.
 
+pub mod counted;
+
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Number of cells in a block, one a lane.
@@ -351,9 +353,24 @@ pub enum Kernel {
     Avx2,
     /// Plain arrays: every processor.
     Portable,
+    /// Plain arrays that count their operations, see [`counted`]: for measurements, never for speed.
+    Counting,
 }
 
 impl Kernel {
+    /// The paths that a user may name.
+    pub const NAMES: &'static [(&'static str, Kernel)] = &[("avx2", Kernel::Avx2), ("portable", Kernel::Portable)];
+
+    /// The name in options and tables.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|(_, kernel)| *kernel == self).map_or("counting", |(name, _)| name)
+    }
+
+    /// Whether this processor has it.
+    pub fn is_available(self) -> bool {
+        self != Kernel::Avx2 || Kernel::widest() == Kernel::Avx2
+    }
+
     /// The widest that this processor has.
     pub fn widest() -> Kernel {
         #[cfg(target_arch = "x86_64")]
@@ -370,6 +387,9 @@ impl Kernel {
         if self == Kernel::Avx2 && is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
             // SAFETY: the processor has both features.
             return unsafe { x86::enter_avx2(work) };
+        }
+        if self == Kernel::Counting {
+            return work.run::<counted::Counted>();
         }
         work.run::<Portable>()
     }

@@ -67,6 +67,7 @@ pub mod run;
 pub mod exact;
 pub mod scene;
 pub mod study;
+pub mod bench;
 pub mod cli;
 
 pub use error::{Error, Place};

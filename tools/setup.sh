@@ -8,6 +8,8 @@ python=${PYTHON:-python3}
 packages=(libhdf5-dev pkg-config)
 # Libraries that the wheels of gmsh and vtk load but do not bring.
 packages+=(libglu1-mesa libxft2 libxcursor1 libxinerama1 libfontconfig1 libxrender1 libgl1)
+# Counts instructions where a test guards them.
+packages+=(valgrind)
 # Debian's python3 comes without the part that makes virtual environments.
 "$python" -c 'import ensurepip' 2>/dev/null || packages+=(python3-venv)
 

@@ -1,5 +1,6 @@
 //! The program: one file a subcommand, arguments and `run`.
 
+mod bench;
 mod export;
 mod mesh;
 mod pipeline;
@@ -13,6 +14,7 @@ mod study;
 mod summary;
 
 use crate::error::{Error, Result};
+use crate::lane::Kernel;
 use clap::{Parser, Subcommand};
 use std::path::{Path, PathBuf};
 
@@ -51,6 +53,8 @@ enum Command {
     Run(run::Args),
     /// Show what accuracy costs in time: methods, degrees and meshes on one problem
     Study(study::Args),
+    /// Measure the speed of the step against the peaks of this machine
+    Bench(bench::Args),
     /// Write a run's snapshots for ParaView, meshio and DOLFINx
     Export(export::Args),
 }
@@ -67,6 +71,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Command::Solve(args) => solve::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Study(args) => study::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Export(args) => export::run(&args),
     }
 }
@@ -93,6 +98,9 @@ struct RunArgs {
     /// Threads [default: all processors]; the results do not depend on it
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
+    /// Instruction set: avx2 or portable [default: the widest of this processor]; results differ in the last digits
+    #[arg(long, value_name = "NAME")]
+    kernel: Option<String>,
 }
 
 impl RunArgs {
@@ -115,6 +123,22 @@ fn start_threads(threads: usize) -> Result<()> {
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     pool.map_err(|why| Error::input(format!("cannot start {threads} threads: {why}"), "give a smaller --threads"))
+}
+
+/// The instruction set of `--kernel`; the widest of this processor where none is named.
+fn kernel(name: Option<&str>) -> Result<Kernel> {
+    let Some(name) = name else { return Ok(Kernel::widest()) };
+    let names: Vec<&str> = Kernel::NAMES.iter().map(|(name, _)| *name).collect();
+    let remedy = format!("give one of {}, or none for the widest that this processor has", names.join(", "));
+    let known = Kernel::NAMES.iter().find(|(known, _)| *known == name).map(|(_, kernel)| *kernel);
+    match known {
+        Some(kernel) if kernel.is_available() => Ok(kernel),
+        Some(_) => Err(Error::input(format!("this processor has no {name}"), remedy)),
+        None if name == "avx512" => {
+            Err(Error::input("--kernel avx512: this version has no kernels for AVX-512 yet", remedy))
+        }
+        None => Err(Error::input(format!("there is no kernel `{name}`"), remedy)),
+    }
 }
 
 /// Refuses to write over a file unless `force`.

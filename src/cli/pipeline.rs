@@ -103,8 +103,8 @@ pub fn describe(loss: &Loss, scheme: &Scheme, mesh: &Mesh) -> String {
 }
 
 /// The scheme on the widest instruction set.
-pub fn scheme(scene: &Scene, body: &Body, operators: Operators) -> Scheme {
-    scene.build_scheme(&body.mesh, operators, Kernel::widest())
+pub fn scheme(scene: &Scene, body: &Body, operators: Operators, kernel: Kernel) -> Scheme {
+    scene.build_scheme(&body.mesh, operators, kernel)
 }
 
 /// Writes scene, mesh and cloud into a run folder. Paths of the scene are replaced by those of the folder, so that the

@@ -5,6 +5,7 @@ use super::print::{mebibytes, row, say, seconds, table};
 use super::{SceneArgs, keep};
 use crate::error::{Error, Result};
 use crate::io::operators_file;
+use crate::lane::Kernel;
 use crate::mesh::Mesh;
 use crate::operators::certificate::{Certificate, certify};
 use crate::operators::{Pool, Sampling};
@@ -38,7 +39,7 @@ pub fn run(args: &Args) -> Result<()> {
     let body = args.files.body(&scene)?;
     let look = if args.force { vec![] } else { vec![args.out.as_path()] };
     let (operators, origin) = pipeline::operators(&scene, &body, &Store { look: &look, write: &args.out })?;
-    let scheme = pipeline::scheme(&scene, &body, operators);
+    let scheme = pipeline::scheme(&scene, &body, operators, Kernel::widest());
     let state = scene.initial_state(&body.mesh, &scheme)?;
     report(&scene, &body, &scheme, &state, settings)?;
     say(origin);

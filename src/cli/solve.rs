@@ -41,6 +41,7 @@ pub fn run(args: &Args) -> Result<()> {
 /// The whole pipeline into a run folder; `operators` is used if it was built from the same input.
 pub fn all(scene_args: &SceneArgs, files: &Files, operators: Option<&Path>, run: &RunArgs) -> Result<()> {
     run.start_threads()?;
+    let kernel = super::kernel(run.kernel.as_deref())?;
     let scene = Scene::load(&scene_args.scene, &scene_args.sets)?;
     scene.warnings().iter().for_each(warn);
     let folder = run.folder(&scene);
@@ -57,7 +58,7 @@ pub fn all(scene_args: &SceneArgs, files: &Files, operators: Option<&Path>, run:
     let own = folder.operators();
     let look: Vec<&Path> = operators.into_iter().chain([own.as_path()]).collect();
     let (operators, origin) = pipeline::operators(&scene, &body, &Store { look: &look, write: &own })?;
-    let scheme = pipeline::scheme(&scene, &body, operators);
+    let scheme = pipeline::scheme(&scene, &body, operators, kernel);
     let state = scene.initial_state(&body.mesh, &scheme)?;
     say(&scene.title);
     preprocess::report(&scene, &body, &scheme, &state, settings)?;

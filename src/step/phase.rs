@@ -1,5 +1,6 @@
 //! The cost report: seconds per phase of the step, under the paper's names.
 
+use crate::lane::counted;
 use std::time::Instant;
 
 /// A phase of the step.
@@ -61,5 +62,6 @@ impl Phases {
         let now = Instant::now();
         self.seconds[phase as usize] += (now - *start).as_secs_f64();
         *start = now;
+        counted::mark(phase as usize);
     }
 }

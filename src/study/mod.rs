@@ -8,7 +8,7 @@
 mod case;
 mod choice;
 mod front;
-mod plot;
+pub(crate) mod plot;
 mod predict;
 mod reference;
 mod session;

@@ -19,10 +19,12 @@ pub enum Axis {
     Dofs,
 }
 
-const SIZE: (u32, u32) = (900, 620);
-const FONT: &str = "sans-serif";
+/// Pixels.
+pub const SIZE: (u32, u32) = (900, 620);
+/// The font of all text.
+pub const FONT: &str = "sans-serif";
 /// By degree from 0; told apart by the colour-blind, too (Okabe, Ito).
-const COLOURS: [RGBColor; 7] = [
+pub const COLOURS: [RGBColor; 7] = [
     RGBColor(120, 120, 120),
     RGBColor(230, 159, 0),
     RGBColor(0, 114, 178),
@@ -48,27 +50,57 @@ impl Axis {
     }
 }
 
-/// Draws error over `axis` into `path`, whose ending (`svg`, `png`) says how.
+/// Something to draw.
+pub trait Picture {
+    /// Draws it on an area of [`SIZE`].
+    ///
+    /// # Errors
+    /// Where there is nothing to draw, or the backend cannot.
+    fn draw<B: DrawingBackend>(&self, area: DrawingArea<B, Shift>) -> std::result::Result<(), String>;
+}
+
+/// Draws a picture into `path`, whose ending (`svg`, `png`) says how.
 ///
 /// # Errors
 /// Where there is nothing to draw, or the file cannot be written.
-pub fn plot(records: &[Record], axis: Axis, title: &str, path: &Path) -> Result<()> {
+pub fn save<P: Picture>(picture: &P, path: &Path) -> Result<()> {
     fonts();
     let pending = Pending::new(path)?;
     let failed = |why: String| Error::output(path, why);
     if path.extension().is_some_and(|ending| ending == "svg") {
         let mut text = String::new();
-        draw(SVGBackend::with_string(&mut text, SIZE).into_drawing_area(), records, axis, title).map_err(failed)?;
+        picture.draw(SVGBackend::with_string(&mut text, SIZE).into_drawing_area()).map_err(failed)?;
         std::fs::write(pending.path(), text).map_err(|why| Error::output(path, why))?;
     } else {
         // The bitmap backend tells the format from the ending, which a pending file has not.
         let mut pixels = vec![255; 3 * SIZE.0 as usize * SIZE.1 as usize];
         let area = BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area();
-        draw(area, records, axis, title).map_err(failed)?;
+        picture.draw(area).map_err(failed)?;
         let file = std::fs::File::create(pending.path()).map_err(|why| Error::output(path, why))?;
         write_png(file, &pixels).map_err(|why| Error::output(path, why))?;
     }
     pending.commit()
+}
+
+/// Error over `axis`, a line a series.
+struct WorkPrecision<'a> {
+    records: &'a [Record],
+    axis: Axis,
+    title: &'a str,
+}
+
+impl Picture for WorkPrecision<'_> {
+    fn draw<B: DrawingBackend>(&self, area: DrawingArea<B, Shift>) -> std::result::Result<(), String> {
+        draw(area, self.records, self.axis, self.title)
+    }
+}
+
+/// Draws error over `axis` into `path`, as [`save`].
+///
+/// # Errors
+/// As for [`save`].
+pub fn plot(records: &[Record], axis: Axis, title: &str, path: &Path) -> Result<()> {
+    save(&WorkPrecision { records, axis, title }, path)
 }
 
 /// The font comes with the program: a machine without a desktop has none.
@@ -163,7 +195,7 @@ fn draw<B: DrawingBackend>(
 }
 
 /// A square of 9 x 9 pixels.
-fn square(at: (i32, i32), style: ShapeStyle) -> plotters::element::Rectangle<(i32, i32)> {
+pub fn square(at: (i32, i32), style: ShapeStyle) -> plotters::element::Rectangle<(i32, i32)> {
     plotters::element::Rectangle::new([(at.0 - 4, at.1 - 4), (at.0 + 4, at.1 + 4)], style)
 }
 
@@ -187,7 +219,7 @@ fn legend<B: DrawingBackend>(
 }
 
 /// Whole decades around positive numbers.
-fn decades(values: impl Iterator<Item = f64>) -> (f64, f64) {
+pub fn decades(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
     let (low, high) = (low.log10().floor(), high.log10().ceil());
     (10_f64.powf(low), 10_f64.powf(if high > low { high } else { low + 1.0 }))

@@ -1,0 +1,70 @@
+//! Flops of one cell in one step, by phase, from the real kernels on counting lanes.
+
+use super::peaks::pool;
+use super::{Domain, Problem, Setup};
+use crate::error::Result;
+use crate::lane::Kernel;
+use crate::lane::counted::{self, Counts};
+use crate::step::phase::PHASES;
+use crate::step::{Survey, Work};
+
+/// Cells per direction of the small mesh that stands for a large one of equal cells: whole blocks, no boundary.
+const SMALL: [usize; 2] = [8, 8];
+
+/// Operations of one cell in one step and the survey of its result, in the order of [`crate::step::Phase`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flops {
+    /// Operations by phase.
+    pub phases: [Counts; PHASES],
+}
+
+impl Flops {
+    /// Flops by phase.
+    pub fn of(&self, phase: usize) -> f64 {
+        self.phases[phase].flops() as f64
+    }
+
+    /// Flops of all phases.
+    pub fn total(&self) -> f64 {
+        (0..PHASES).map(|phase| self.of(phase)).sum()
+    }
+}
+
+/// Counts a setup. Fluxes at boundaries and between materials, which go cell by cell, are not on lanes and not counted; the
+/// periodic wave has none.
+///
+/// # Errors
+/// Bad input.
+pub fn count(setup: &Setup) -> Result<Flops> {
+    let domain = match &setup.domain {
+        Domain::Cells(_) => Domain::Cells(SMALL),
+        file => file.clone(),
+    };
+    let problem = Setup { domain, kernel: Kernel::Counting, ..setup.clone() }.build()?;
+    // Counts are kept by thread.
+    Ok(pool(1)?.install(|| count_step(&problem)))
+}
+
+fn count_step(problem: &Problem) -> Flops {
+    let Problem { scheme, start, settings, h, .. } = problem;
+    let mut work = Work::new(scheme, start);
+    let mut survey = Survey::default();
+    // The wave at its start is healthy, and so after a stable step.
+    let _ = scheme.survey(start, &work, &mut survey);
+    let dt = settings.courant * h / survey.fastest;
+    let slots = counted::count(|| {
+        scheme.step(start, dt, &survey, &mut work);
+        let _ = scheme.survey(&work.next, &work, &mut Survey::default());
+    });
+    let blocks = scheme.operators.blocks.len() as u64;
+    let mean = |c: &Counts| Counts {
+        additions: c.additions / blocks,
+        multiplications: c.multiplications / blocks,
+        fused: c.fused / blocks,
+        divisions: c.divisions / blocks,
+        roots: c.roots / blocks,
+    };
+    let mut phases = [Counts::ZERO; PHASES];
+    phases.iter_mut().zip(&slots).for_each(|(phase, slot)| *phase = mean(slot));
+    Flops { phases }
+}

@@ -1,0 +1,192 @@
+//! Steps against the clock.
+
+use super::Problem;
+use super::peaks::pool;
+use crate::error::{Error, Result};
+use crate::exact::errors;
+use crate::run::dofs;
+use crate::state::State;
+use crate::step::phase::PHASES;
+use crate::step::{Loss, Phases, Survey, Work};
+use cpu_time::ProcessTime;
+use std::time::{Duration, Instant};
+
+/// How long a measurement is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Length {
+    /// Until the wave has run its way, once.
+    Wave,
+    /// So many steps.
+    Steps(usize),
+    /// Until so many seconds have passed on the clock.
+    Seconds(f64),
+}
+
+/// What was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Threads.
+    pub threads: usize,
+    /// Grid unknowns.
+    pub dofs: usize,
+    /// Cells.
+    pub cells: usize,
+    /// Material points (nodes where a method has none).
+    pub points: usize,
+    /// Stages of a step.
+    pub stages: usize,
+    /// Steps that were timed.
+    pub steps: usize,
+    /// CPU seconds of all threads.
+    pub cpu: f64,
+    /// Seconds on the clock.
+    pub wall: f64,
+    /// Seconds per phase, summed over threads: those of the quietest step times the steps. (Phases are timed on the clock,
+    /// which runs on while others have the processor.)
+    pub phases: Phases,
+    /// Bytes of operators, state and work.
+    pub bytes: usize,
+    /// The standard error where the wave has run its way, or of the last state where it has not.
+    pub error: f64,
+}
+
+impl Measured {
+    /// DoF-updates per CPU second.
+    pub fn rate(&self) -> f64 {
+        (self.dofs * self.stages * self.steps) as f64 / self.cpu
+    }
+
+    /// Cell-steps per CPU second.
+    pub fn cell_steps(&self) -> f64 {
+        (self.cells * self.steps) as f64 / self.cpu
+    }
+
+    /// Particle-steps per CPU second.
+    pub fn particle_steps(&self) -> f64 {
+        (self.points * self.steps) as f64 / self.cpu
+    }
+}
+
+/// The steps of a problem and what they have cost so far.
+struct Clocked<'a> {
+    problem: &'a Problem,
+    state: State,
+    survey: Survey,
+    next: Survey,
+    work: Work,
+    quietest: Phases,
+    steps: usize,
+    cpu: Duration,
+    wall: Duration,
+}
+
+impl Clocked<'_> {
+    /// Back to the start.
+    fn rewind(&mut self) -> std::result::Result<(), Loss> {
+        self.state.clone_from(&self.problem.start);
+        self.problem.scheme.survey(&self.state, &self.work, &mut self.survey)
+    }
+
+    /// One step and its survey; the last one of a wave ends at its end.
+    fn step(&mut self) -> std::result::Result<(), Loss> {
+        let Problem { scheme, settings, h, .. } = self.problem;
+        let dt = (settings.courant * h / self.survey.fastest).min(settings.end - self.state.time);
+        scheme.step(&self.state, dt, &self.survey, &mut self.work);
+        scheme.survey(&self.work.next, &self.work, &mut self.next)?;
+        std::mem::swap(&mut self.state, &mut self.work.next);
+        std::mem::swap(&mut self.survey, &mut self.next);
+        let phases = self.work.take_phases();
+        self.quietest.seconds.iter_mut().zip(phases.seconds).for_each(|(least, s)| *least = least.min(s));
+        self.steps += 1;
+        Ok(())
+    }
+
+    /// Whether the wave has run its way, to the rounding of its sum of steps.
+    fn is_through(&self) -> bool {
+        self.state.time >= self.problem.settings.end * (1.0 - 1e-12)
+    }
+
+    /// Timed steps until the wave is through or the length is reached; whether it is reached.
+    fn pass(&mut self, length: Length) -> std::result::Result<bool, Loss> {
+        let (cpu, wall) = (ProcessTime::now(), Instant::now());
+        let mut reached = false;
+        while !reached && !self.is_through() {
+            self.step()?;
+            reached = match length {
+                Length::Wave => false,
+                Length::Steps(steps) => self.steps >= steps,
+                Length::Seconds(seconds) => (self.wall + wall.elapsed()).as_secs_f64() >= seconds,
+            };
+        }
+        self.cpu += cpu.elapsed();
+        self.wall += wall.elapsed();
+        Ok(reached || length == Length::Wave)
+    }
+}
+
+/// Before the first step.
+const UNKNOWN: Phases = Phases { seconds: [f64::INFINITY; PHASES] };
+
+/// Steps a problem on threads of its own. The first step, which meets new memory, is not timed.
+///
+/// # Errors
+/// Threads that cannot be started; a wave that loses stability.
+pub fn measure(problem: &Problem, threads: usize, length: Length) -> Result<Measured> {
+    pool(threads)?.install(|| {
+        let work = Work::new(&problem.scheme, &problem.start);
+        let (survey, zero) = (Survey::default(), Duration::ZERO);
+        let state = problem.start.clone();
+        let next = survey.clone();
+        let mut clocked =
+            Clocked { problem, state, survey, next, work, quietest: UNKNOWN, steps: 0, cpu: zero, wall: zero };
+        let mut end = None;
+        let outcome = steps(&mut clocked, length, &mut end);
+        outcome.map_err(|loss| unstable(&loss, &clocked.state))?;
+        Ok(finish(clocked, threads, end.as_ref()))
+    })
+}
+
+/// All passes; `end` keeps the state of the wave at its end.
+fn steps(clocked: &mut Clocked, length: Length, end: &mut Option<State>) -> std::result::Result<(), Loss> {
+    clocked.rewind()?;
+    clocked.step()?;
+    clocked.rewind()?;
+    clocked.work.take_phases();
+    (clocked.steps, clocked.quietest) = (0, UNKNOWN);
+    while !clocked.pass(length)? {
+        end.get_or_insert_with(|| clocked.state.clone());
+        clocked.rewind()?;
+        // The survey of the start belongs to no step.
+        clocked.work.take_phases();
+    }
+    Ok(())
+}
+
+fn finish(clocked: Clocked, threads: usize, end: Option<&State>) -> Measured {
+    let Problem { scheme, mesh, wave, material, points, .. } = clocked.problem;
+    let error = errors(wave, mesh, scheme, end.unwrap_or(&clocked.state), material).standard;
+    let phases = Phases { seconds: clocked.quietest.seconds.map(|s| s * clocked.steps as f64) };
+    let state = size_of_val(&clocked.state.u[..]);
+    Measured {
+        threads,
+        dofs: dofs(scheme),
+        cells: mesh.cells.len(),
+        points: *points,
+        stages: scheme.stages(),
+        steps: clocked.steps,
+        cpu: clocked.cpu.as_secs_f64(),
+        wall: clocked.wall.as_secs_f64(),
+        phases,
+        bytes: scheme.operators.bytes() + clocked.work.bytes() + state,
+        error,
+    }
+}
+
+fn unstable(loss: &Loss, state: &State) -> Error {
+    Error::Unstable {
+        what: format!("{} in cell {} (from 0)", loss.kind, loss.cell),
+        time: state.time,
+        step: state.step + 1,
+        remedy: "the wave is not resolved, or --set took the stability away: give more --cells".to_owned(),
+    }
+}

@@ -1,0 +1,157 @@
+//! What is measured, and everything that a step of it needs.
+
+use super::wave::{self, Wave};
+use crate::error::{Error, Result};
+use crate::lane::Kernel;
+use crate::mesh::{self, Mesh};
+use crate::operators::Operators;
+use crate::riemann::TRACE;
+use crate::run::Settings;
+use crate::scene::{Method, Scene};
+use crate::state::{State, UNKNOWNS};
+use crate::step::{Scheme, Tableau};
+use crate::study::smallest_h;
+use std::path::{Path, PathBuf};
+
+/// The mesh of a measurement.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Domain {
+    /// Equal square cells, so many per direction, on a rectangle 1 m wide.
+    Cells([usize; 2]),
+    /// A mesh file of a rectangle whose sides match.
+    File(PathBuf),
+}
+
+/// What is measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setup {
+    /// The method.
+    pub method: Method,
+    /// N = N_T.
+    pub degree: usize,
+    /// The mesh.
+    pub domain: Domain,
+    /// Layout of the material points of ADER-DGMPM; none: that of the degree.
+    pub layout: Option<String>,
+    /// The law, with the constants of the paper's steel.
+    pub law: String,
+    /// The instruction set.
+    pub kernel: Kernel,
+    /// Further `--set KEY=VALUE` of the scene, such as `curl.control=off`.
+    pub sets: Vec<String>,
+}
+
+/// Bytes of a cell in the mesh, its links and blocks.
+const MESH: usize = 500;
+
+/// A setup that is ready to step.
+pub struct Problem {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// The law of each cell.
+    pub material: Vec<usize>,
+    /// Number of material points; of nodes, where a method has none.
+    pub points: usize,
+    /// The scheme.
+    pub scheme: Scheme,
+    /// The initial state.
+    pub start: State,
+    /// The exact solution.
+    pub wave: Wave,
+    /// Step, and the time at which the wave has run its way.
+    pub settings: Settings,
+    /// min_e h_e, m.
+    pub h: f64,
+}
+
+impl Setup {
+    /// Mesh, operators, scheme and initial state.
+    ///
+    /// # Errors
+    /// Bad input; a size that this machine's memory cannot hold.
+    pub fn build(&self) -> Result<Problem> {
+        let (mesh, scene) = self.mesh()?;
+        let settings = scene.settings()?;
+        let cloud = scene.build_cloud(&mesh)?;
+        let material = scene.material_of_cells(&mesh);
+        let operators = Operators::build(&mesh, &scene.links(&mesh)?, &material, &scene.needs(&cloud))?;
+        let scheme = scene.build_scheme(&mesh, operators, self.kernel);
+        let exact = scene.build_exact().ok_or_else(|| Error::input("the scene has no [exact]", "keep that table"))?;
+        let wave = Wave::new(exact);
+        let start = wave.state(&mesh, &scheme);
+        let nodes = mesh.cells.len() * scheme.operators.nodes();
+        let points = if scene.scheme.method == Method::AderDgmpm { cloud.len() } else { nodes };
+        let h = smallest_h(&mesh);
+        Ok(Problem { mesh, material, points, scheme, start, wave, settings, h })
+    }
+
+    /// The mesh, once it is known to fit, and the scene on it.
+    fn mesh(&self) -> Result<(Mesh, Scene)> {
+        match &self.domain {
+            Domain::Cells(cells) => {
+                let size = [1.0, cells[1] as f64 / cells[0].max(1) as f64];
+                let scene = self.scene([[0.0; 2], size])?;
+                self.check_memory(cells[0].saturating_mul(cells[1]), &scene)?;
+                Ok((mesh::rectangle(size, *cells)?, scene))
+            }
+            Domain::File(path) => {
+                let mesh = wave::periodic(crate::scene::build::read_mesh(path)?, path)?;
+                let scene = self.scene(wave::extent(&mesh))?;
+                self.check_memory(mesh.cells.len(), &scene)?;
+                Ok((mesh, scene))
+            }
+        }
+    }
+
+    /// The scene; what the user names goes in as `--set`, so that messages are those of a run.
+    fn scene(&self, extent: [[f64; 2]; 2]) -> Result<Scene> {
+        let mut sets = vec![
+            format!("scheme.method={}", self.method.name()),
+            format!("scheme.degree={}", self.degree),
+            format!("material.0.law={}", self.law),
+        ];
+        sets.extend(self.layout.as_ref().map(|layout| format!("cloud.layout={layout}")));
+        sets.extend(self.sets.iter().cloned());
+        Scene::parse(&wave::scene(extent), Path::new("bench.toml"), &sets)
+    }
+
+    /// Refuses what would not fit: a machine that swaps measures its disk.
+    fn check_memory(&self, cells: usize, scene: &Scene) -> Result<()> {
+        let needed = self.bytes_per_cell(scene).saturating_mul(cells);
+        let available = available_memory();
+        if available.is_some_and(|available| needed > available) {
+            let gib = |bytes: usize| bytes as f64 / f64::from(1 << 30);
+            let (needed, available) = (gib(needed), gib(available.unwrap_or(0)));
+            return Err(Error::input(
+                format!("{cells} cells need about {needed:.1} GiB, {available:.1} GiB are free"),
+                "give fewer --cells, a lower --degree, or a lattice as --layout",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Bytes of state, work and operators of a cell, with matrices of its own where points or cells differ.
+    fn bytes_per_cell(&self, scene: &Scene) -> usize {
+        let m = self.degree + 1;
+        let (n, np) = (m * m, scene.cloud.per_direction * scene.cloud.per_direction);
+        let stages = match self.method {
+            Method::RkDgfem => Tableau::of_degree(scene.scheme.time_degree).stages(),
+            _ => 1,
+        };
+        let files = matches!(self.domain, Domain::File(_));
+        let random = self.method == Method::AderDgmpm && self.layout.as_deref() == Some("jitter");
+        // State, its start, its copy at the end, the next one, the numbers before they are packed; rates.
+        let unknowns = UNKNOWNS * n * (5 + stages);
+        let geometry = 6 * n + 4 * m * TRACE + 6 * np;
+        // One copy of each class while they are built, one in blocks.
+        let own = 2 * (usize::from(random) * (2 * n * np + 2 * np * np) + usize::from(files) * 2 * n * n);
+        MESH + 8 * (unknowns + geometry + own)
+    }
+}
+
+/// Free memory of the system, bytes; none where it does not tell.
+fn available_memory() -> Option<usize> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    Some(line.split_whitespace().next()?.parse::<usize>().ok()? * 1024)
+}

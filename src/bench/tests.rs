@@ -1,0 +1,192 @@
+use super::campaign::SIZES;
+use super::chart::{Chart, Line, Marker};
+use super::summary::{self, Row};
+use super::*;
+use crate::lane::counted::{self, Counts, SLOTS};
+use crate::lane::{F8, Kernel, Lanes, Work, load_array};
+use crate::material::{LinearElastic, Material, NeoHookean};
+use crate::scene::Method;
+use crate::step::Phase;
+use crate::study::plot::save;
+
+fn setup(method: Method, degree: usize, layout: &str) -> Setup {
+    Setup {
+        method,
+        degree,
+        domain: Domain::Cells([8, 8]),
+        layout: Some(layout.to_owned()),
+        law: "neo-hookean".to_owned(),
+        kernel: Kernel::Portable,
+        sets: vec![],
+    }
+}
+
+struct Stress<M>(M);
+impl<M: Material> Work for Stress<M> {
+    type Out = ();
+    fn run<L: Lanes>(self) {
+        let f = load_array::<L, 4>(&[1.1, 0.1, 0.2, 0.9].map(F8::splat));
+        self.0.stress(f, &mut []);
+    }
+}
+
+/// Flops of the stress of neo-Hookean: det 1 mul 1 fma; J^(-1/3) twice 4 mul 1 add 3 fma; I 2 mul 2 add 2 fma; A 2 mul;
+/// B 4 mul 1 add 1 fma; A F + B cof F 4 mul 4 fma.
+const STRESS: u64 = 54;
+
+#[test]
+fn stress_takes_the_flops_of_its_formula() {
+    let of = |counts: [Counts; SLOTS]| counts[SLOTS - 1];
+    let neo_hookean = of(counted::count(|| Kernel::Counting.run(Stress(NeoHookean::new(1.0, 0.3, 1.0)))));
+    let expected = Counts { additions: 5, multiplications: 21, fused: 14, divisions: 0, roots: 0 };
+    assert_eq!((neo_hookean, neo_hookean.flops()), (expected, STRESS));
+    // tr eps 3 add, times lambda 1 mul; shear 1 add 1 mul; the diagonal 2 add 2 fma.
+    let linear = of(counted::count(|| Kernel::Counting.run(Stress(LinearElastic::new(1.0, 0.3, 1.0)))));
+    assert_eq!(linear, Counts { additions: 6, multiplications: 2, fused: 2, divisions: 0, roots: 0 });
+}
+
+#[test]
+fn dense_products_at_the_points_take_two_flops_an_entry_and_field() {
+    for degree in 1..=4 {
+        let flops = count(&setup(Method::AderDgmpm, degree, "jitter")).unwrap();
+        let n = ((degree + 1) * (degree + 1)) as f64;
+        // G2P of six fields; P2G of F, v and P, ten fields.
+        assert_eq!(flops.of(Phase::GridToPoints as usize), 2.0 * 6.0 * n * n, "S{degree}");
+        assert_eq!(flops.of(Phase::PointsToGrid as usize), 2.0 * 10.0 * n * n, "S{degree}");
+    }
+}
+
+#[test]
+fn the_predictor_takes_the_flops_of_its_sweeps() {
+    for degree in 1..=3 {
+        let flops = count(&setup(Method::AderDgmpm, degree, "jitter")).unwrap();
+        let (n, times, sweeps) = (((degree + 1) * (degree + 1)) as u64, degree as u64 + 1, degree as u64 + 1);
+        // At a point: law and p / rho0; two derivatives of six fields; four entries of Grad v at 1 mul 1 fma, two of
+        // Div P at 2 mul 2 fma 1 add.
+        let rate = n * (STRESS + 2 + 2 * 6 * 2 * n + 4 * 3 + 2 * 7);
+        let integrate = 2 * 6 * n * times * times;
+        let average = n * times * (STRESS + 2 + 2 * 10);
+        // The first sweep is one evaluation.
+        let expected = rate * (1 + (sweeps - 1) * times) + integrate * sweeps + average;
+        assert_eq!(flops.of(Phase::Predictor as usize), expected as f64, "S{degree}");
+    }
+}
+
+#[test]
+fn the_volume_term_takes_the_flops_of_sum_factorisation() {
+    for degree in 1..=4 {
+        let flops = count(&setup(Method::AderDgfem, degree, "gauss")).unwrap();
+        let m = (degree + 1) as f64;
+        // At a node: four contravariant tractions at 1 mul 1 fma; 8 fma for each of m entries of the 1D matrices; the
+        // scale; four gradients at 2 mul 1 fma; two rows of momentum at 1 mul.
+        let expected = m * m * (4.0 * 3.0 + 16.0 * m + 1.0 + 4.0 * 4.0 + 2.0);
+        assert_eq!(flops.of(Phase::Volume as usize), expected, "S{degree}");
+    }
+}
+
+#[test]
+fn the_curl_free_projection_takes_the_flops_of_its_low_rank_product() {
+    // Ranks of the gradients on affine cells by the design: 5, 10, 17 of 8, 18, 32.
+    for (degree, rank) in [(1, 5.0), (2, 10.0), (3, 17.0)] {
+        for method in [Method::RkDgfem, Method::AderDgfem] {
+            let flops = count(&setup(method, degree, "gauss")).unwrap();
+            let rows = 2.0 * ((degree + 1) * (degree + 1)) as f64;
+            let columns = rows - rank;
+            // For both rows of F: W F; C^T of it and theta; C of that.
+            let expected = 2.0 * (rows + (2.0 * rows + 1.0) * columns + 2.0 * rows * columns);
+            assert_eq!(flops.of(Phase::CurlFree as usize), expected, "{method:?} S{degree}");
+        }
+        let off = Setup { sets: vec!["curl.control=off".into()], ..setup(Method::RkDgfem, degree, "gauss") };
+        assert_eq!(count(&off).unwrap().of(Phase::CurlFree as usize), 0.0);
+    }
+}
+
+#[test]
+fn counts_of_a_cell_do_not_depend_on_the_mesh() {
+    let squares = setup(Method::RkDgfem, 2, "gauss");
+    let slender = Setup { domain: Domain::Cells([48, 2]), ..squares.clone() };
+    assert_eq!(count(&squares).unwrap(), count(&slender).unwrap());
+}
+
+#[test]
+fn the_wave_is_solved_with_the_order_of_the_degree() {
+    for method in [Method::RkDgfem, Method::AderDgmpm] {
+        let errors = [16, 32].map(|n| {
+            let setup = Setup { domain: Domain::Cells([n, 2]), ..setup(method, 2, "midpoints") };
+            measure(&setup.build().unwrap(), 1, Length::Wave).unwrap().error
+        });
+        // Order 3; the pulse is one and two cells wide: from 2.5 up, and smaller than a third in any case.
+        let order = (errors[0] / errors[1]).log2();
+        assert!(order > 2.5 && errors[1] < 0.02, "{method:?}: {errors:?}");
+    }
+}
+
+#[test]
+fn a_measurement_has_the_steps_it_was_asked_for_and_starts_anew_after_the_wave() {
+    let problem = setup(Method::RkDgfem, 1, "gauss").build().unwrap();
+    let wave = measure(&problem, 1, Length::Wave).unwrap();
+    let longer = measure(&problem, 2, Length::Steps(2 * wave.steps + 3)).unwrap();
+    assert_eq!((longer.steps, longer.threads), (2 * wave.steps + 3, 2));
+    // The error is that of the end of the wave: the same bits, however often it was run and on however many threads.
+    assert_eq!(longer.error.to_bits(), wave.error.to_bits());
+    assert_eq!((wave.dofs, wave.cells, wave.points, wave.stages), (64 * 24, 64, 256, 2));
+    assert!(wave.cpu > 0.0 && wave.wall > 0.0 && wave.phases.seconds.iter().sum::<f64>() > 0.0);
+}
+
+#[test]
+fn traffic_of_rk2_is_what_its_sweeps_read_and_write() {
+    let problem = setup(Method::RkDgfem, 1, "gauss").build().unwrap();
+    let operators = &problem.scheme.operators;
+    let (unknowns, traces) = (6.0 * 4.0 * 8.0, 4.0 * 2.0 * 10.0 * 8.0);
+    let cells = problem.mesh.cells.len() as f64;
+    let geometry = (2 * operators.geometry.bytes() + operators.blocks.bytes()) as f64 / cells;
+    let curl_free = operators.curl_free.as_ref().unwrap().bytes() as f64 / cells;
+    // Two stages; one earlier rate in the second, two in the update; U in, U out, the survey.
+    let expected = 2.0 * (4.0 * unknowns + 2.0 * traces + geometry) + 3.0 * unknowns + 3.0 * unknowns + curl_free;
+    assert!((traffic(&problem) - expected).abs() < 1e-9 * expected, "{} {expected}", traffic(&problem));
+}
+
+#[test]
+fn peaks_are_those_of_a_machine() {
+    let peaks = peaks(Kernel::widest(), 1).unwrap();
+    // From a slow laptop under load to a processor that does not exist yet.
+    assert!((1e8..1e12).contains(&peaks.fma) && (1e8..1e12).contains(&peaks.triad), "{peaks:?}");
+}
+
+#[test]
+fn tables_hold_what_was_measured_and_leave_out_what_was_not() {
+    let setup = setup(Method::RkDgfem, 2, "gauss");
+    let problem = setup.build().unwrap();
+    let measured = measure(&problem, 1, Length::Steps(2)).unwrap();
+    let peaks = Peaks { fma: 4e10, triad: 2e10 };
+    let figures = Figures::new(&setup, &problem, measured.clone(), count(&setup).unwrap(), peaks);
+    let row =
+        |variant, figures: Figures| Row { series: 0, variant, size: SIZES[0], runs: 1, best: 1.0, wall: 1.0, figures };
+    let twice = Measured { cpu: 2.0 * measured.cpu, ..measured.clone() };
+    let linear = Figures { measured: twice, ..figures.clone() };
+    let rows = [row("", figures), row("linear-elastic", linear)];
+    let text = summary::markdown(&rows);
+    let line = |title: &str| text.lines().skip_while(|line| !line.contains(title)).nth(2).unwrap_or_default();
+    assert_eq!(line("DoF-updates/s/core, 6e4"), format!("| rk-dgfem |  | {:.2e} |  |  |  |  |", measured.rate()));
+    assert_eq!(line("rate of the linear law"), "| rk-dgfem |  | 0.50 |  |  |  |  |");
+    assert!(!text.contains("two threads") && !text.contains("predictor: share") && text.contains("40.0 GFLOP/s"));
+    let csv = summary::csv(&rows);
+    // Names of phases have commas and stand in quotes.
+    let columns = |line: &str| line.split('"').step_by(2).map(|part| part.matches(',').count()).sum::<usize>();
+    assert!(csv.lines().all(|line| columns(line) == columns(csv.lines().next().unwrap())), "{csv}");
+    assert_eq!(csv.lines().count(), 3);
+}
+
+#[test]
+fn a_chart_is_drawn_and_an_empty_one_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = |marker| Line { name: format!("{marker:?}"), colour: 2, marker, points: vec![(1.0, 10.0), (5.0, 70.0)] };
+    let markers = [Marker::Bare, Marker::Circle, Marker::Triangle, Marker::Square, Marker::Cross];
+    let [title, x, y] = ["title", "x", "y"].map(str::to_owned);
+    let chart = Chart { title, x, y, lines: markers.map(line).to_vec() };
+    save(&chart, &folder.path().join("chart.svg")).unwrap();
+    let svg = std::fs::read_to_string(folder.path().join("chart.svg")).unwrap();
+    assert!(svg.starts_with("<svg") && markers.iter().all(|marker| svg.contains(&format!("{marker:?}"))));
+    let empty = Chart { lines: vec![], ..chart };
+    assert!(save(&empty, &folder.path().join("empty.png")).is_err());
+}

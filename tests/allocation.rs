@@ -1,0 +1,192 @@
+//! A step allocates nothing: a counting allocator stands in this program, and a scheme that has done its first steps takes
+//! more with boundaries of every kind, data that depends on time and a source.
+
+use dgmpm::lane::Kernel;
+use dgmpm::operators::Operators;
+use dgmpm::scene::Scene;
+use dgmpm::state::State;
+use dgmpm::step::{Scheme, Survey, Work};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard};
+
+/// Counts what is asked of the system: in all threads, and in each for itself.
+struct Counting;
+
+static ALL: AtomicUsize = AtomicUsize::new(0);
+thread_local! {
+    static OWN: Cell<usize> = const { Cell::new(0) };
+}
+
+fn count() {
+    ALL.fetch_add(1, Ordering::Relaxed);
+    OWN.set(OWN.get() + 1);
+}
+
+// SAFETY: every call is passed on to the system's allocator; counting touches no memory of it.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc_zeroed(layout) }
+    }
+    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        unsafe { System.realloc(block, layout, size) }
+    }
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(block, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Walls, traction and velocity that depend on place and time, absorbing edges, a source and the displacement.
+const SCENE: &str = r#"
+[mesh]
+rectangle = { size = [1.0, 1.0], cells = [9, 9] }
+[[material]]
+law = "neo-hookean"
+young = 2e11
+poisson = 0.3
+density = 7800.0
+[initial]
+velocity = ["30*sin(pi*x)", "-10*sin(pi*y)"]
+[[boundary]]
+group = "left"
+kind = "wall"
+speed = "5*sin(1e4*t)*(1 + y)"
+[[boundary]]
+group = "right"
+kind = "traction"
+value = ["1e8*sin(2e4*t)", "x*y"]
+[[boundary]]
+group = "bottom"
+kind = "velocity"
+value = ["x*t", "max(0, -t)"]
+[[boundary]]
+group = "top"
+kind = "absorbing"
+[[source]]
+kind = "body-force"
+value = ["100*sin(x + 1e3*t)", "-9.81"]
+[scheme]
+degree = 2
+method = "rk-dgfem"
+[time]
+end = 1.0
+[[output]]
+kind = "fields"
+every = 1.0
+fields = ["displacement"]
+"#;
+
+struct Run {
+    scheme: Scheme,
+    state: State,
+    work: Work,
+    survey: Survey,
+    next: Survey,
+    dt: f64,
+}
+
+impl Run {
+    /// A scheme that has done some steps on the threads of the current pool.
+    fn warm(sets: &[&str]) -> Self {
+        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+        let scene = Scene::parse(SCENE, Path::new("allocation.toml"), &sets).unwrap();
+        let mesh = scene.build_mesh().unwrap();
+        let cloud = scene.build_cloud(&mesh).unwrap();
+        let material = scene.material_of_cells(&mesh);
+        let links = scene.links(&mesh).unwrap();
+        let operators = Operators::build(&mesh, &links, &material, &scene.needs(&cloud)).unwrap();
+        let scheme = scene.build_scheme(&mesh, operators, Kernel::widest());
+        let state = scene.initial_state(&mesh, &scheme).unwrap();
+        assert!(state.has_displacement() && !scheme.sources.is_empty());
+        let (work, survey) = (Work::new(&scheme, &state), Survey::default());
+        let mut run = Self { scheme, state, work, next: survey.clone(), survey, dt: 0.0 };
+        run.scheme.survey(&run.state, &run.work, &mut run.survey).unwrap();
+        run.dt = 0.5 * scene.settings().unwrap().courant / 9.0 / run.survey.fastest;
+        (0..3).for_each(|_| run.step());
+        run
+    }
+
+    fn step(&mut self) {
+        self.scheme.step(&self.state, self.dt, &self.survey, &mut self.work);
+        self.scheme.survey(&self.work.next, &self.work, &mut self.next).unwrap();
+        std::mem::swap(&mut self.state, &mut self.work.next);
+        std::mem::swap(&mut self.survey, &mut self.next);
+    }
+}
+
+const CASES: [(&str, &[&str]); 3] = [
+    ("RK S2", &["scheme.method=rk-dgfem"]),
+    ("ADER-DGMPM S2, lattice", &["scheme.method=ader-dgmpm", "cloud.layout=midpoints"]),
+    ("ADER-DGMPM S2, jitter", &["scheme.method=ader-dgmpm", "cloud.layout=jitter"]),
+];
+
+/// Calls of the allocator by the one thread of a pool during `steps` steps.
+fn on_one_thread(sets: &[&str], steps: usize) -> usize {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| {
+        let mut run = Run::warm(sets);
+        let before = OWN.get();
+        (0..steps).for_each(|_| run.step());
+        assert!(run.state.u.iter().flat_map(|u| u.0).all(f64::is_finite));
+        OWN.get() - before
+    })
+}
+
+/// Tests run side by side in this program: one at a time, so that the count of all threads is that of one test.
+static TURN: Mutex<()> = Mutex::new(());
+
+fn turn() -> MutexGuard<'static, ()> {
+    TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+/// Steals between two threads take no memory either: rayon's jobs live on the stack, its queues grow once.
+#[test]
+fn steps_on_two_threads_allocate_nothing_but_a_queue_that_grows() {
+    let _turn = turn();
+    for (name, sets) in CASES {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let seen = pool.install(|| {
+            let mut run = Run::warm(sets);
+            let before = ALL.load(Ordering::Relaxed);
+            (0..200).for_each(|_| run.step());
+            ALL.load(Ordering::Relaxed) - before
+        });
+        // Measured: 0. A thread that sleeps through the warm steps may take its first records of the queues' garbage
+        // collector later, a handful a thread; 200 steps that allocated would need 200 at least.
+        assert!(seen < 16, "{name}: {seen} allocations in 200 steps");
+    }
+}
+
+#[test]
+fn step_and_survey_of_a_warm_scheme_allocate_nothing_on_one_thread() {
+    let _turn = turn();
+    for (name, sets) in CASES {
+        assert_eq!(on_one_thread(sets, 20), 0, "{name}");
+    }
+}
+
+#[test]
+fn the_counter_sees_what_the_first_step_and_a_vector_allocate() {
+    let _turn = turn();
+    let before = OWN.get();
+    drop(std::hint::black_box(vec![1.0; 100]));
+    assert_eq!(OWN.get() - before, 1);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let seen = pool.install(|| {
+        let before = OWN.get();
+        let _run = Run::warm(&[]);
+        OWN.get() - before
+    });
+    assert!(seen > 100, "{seen}: building a scheme allocates");
+}
