@@ -14,12 +14,14 @@ pub mod phase;
 mod predictor;
 mod runge_kutta;
 mod survey;
+pub mod sweeps;
 mod volume;
 
 pub use energy::Totals;
 pub use phase::{Phase, Phases};
 pub use runge_kutta::Tableau;
 pub use survey::{Loss, Survey};
+pub use sweeps::Sweeps;
 
 use crate::basis::TimeBasis;
 use crate::boundary::{Boundary, TimeNode};
@@ -39,8 +41,8 @@ pub enum Method {
     Ader {
         /// The time nodes and their integration matrix.
         time: TimeBasis,
-        /// Picard sweeps; max(N, N_T) + 1 by default.
-        sweeps: usize,
+        /// The schedule of its Picard sweeps.
+        sweeps: Sweeps,
     },
     /// Explicit Runge-Kutta: RK-DGFEM.
     RungeKutta(Tableau),
@@ -92,20 +94,16 @@ impl Work {
         let operators = &scheme.operators;
         let points =
             operators.points.as_ref().map_or(0, |p| p.first.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0));
-        let (stages, times) = match &scheme.method {
-            Method::Ader { time, .. } => (1, time.len()),
-            Method::RungeKutta(tableau) => (tableau.stages(), 1),
-        };
         let scratch = || {
             Mutex::new(Scratch {
-                points: predictor::Arrays::new(points, times, !scheme.sources.is_empty()),
+                points: predictor::Arrays::new(points, operators.line.m, &scheme.method, !scheme.sources.is_empty()),
                 nodes: volume::Arrays::new(operators.line.m, state.components),
                 phases: Phases::default(),
             })
         };
         Self {
             next: state.clone(),
-            rates: vec![vec![F8::ZERO; state.u.len()]; stages],
+            rates: vec![vec![F8::ZERO; state.u.len()]; scheme.stages()],
             traces: vec![F8::ZERO; operators.blocks.len() * 4 * operators.line.m * TRACE],
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
         }
@@ -144,6 +142,14 @@ pub(crate) fn with_scratch<R>(scratch: &[Mutex<Scratch>], body: impl FnOnce(&mut
     let thread = rayon::current_thread_index().unwrap_or(0) % scratch.len();
     let mut guard = scratch[thread].lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     body(&mut guard)
+}
+
+impl Method {
+    /// ADER of degree N_T in time for degree N in space, with the sweeps of [`Sweeps::of_degree`].
+    pub fn ader(degree: usize, time_degree: usize) -> Self {
+        let time = TimeBasis::new(time_degree);
+        Method::Ader { sweeps: Sweeps::of_degree(degree, &time), time }
+    }
 }
 
 impl Scheme {
@@ -226,3 +232,5 @@ impl Scheme {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod sweep_tests;

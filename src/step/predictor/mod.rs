@@ -1,0 +1,242 @@
+//! The local predictor (15)-(21): a space-time collocation at the points of each cell, blind to its neighbours.
+//!
+//! A sweep goes node by node in time: [`Predictor::sample`] forms u and from it Q = (P, v) at all points, once through
+//! the law; [`rates::Rates`] forms r = (Grad v, Div P) from Q. States at time nodes are never stored: they are sums of
+//! rates. So a block holds U^n, Q of one node, and the rates of two sweeps.
+
+mod rates;
+pub mod transfer;
+
+use super::{Method, Sweeps};
+use crate::lane::{Coefficient, F8, Kernel, Lanes, load_array, store_array};
+use crate::material::Material;
+use crate::operators::PointMatrices;
+use rates::Rates;
+use transfer::{ToNodes, ToPoints};
+
+/// Arrays of one block at its points; [point][field] each, those of time nodes with the node outermost.
+#[derive(Default)]
+pub struct Arrays {
+    /// U_p^n.
+    pub start: Vec<F8>,
+    /// U_p^n and what the sources add until a time node, [p][6]; empty without sources.
+    shifted: Vec<F8>,
+    /// r_k,p of the sweep before and of this one, [k][p][6].
+    rates: [Vec<F8>; 2],
+    /// Q of one time node as [`Rates`] wants it, [p][6].
+    q: Vec<F8>,
+    /// Sources b at points and time nodes, [k][p][2]; empty without sources.
+    pub source: Vec<F8>,
+    /// Time averages of F and v, [p][6].
+    pub mean: Vec<F8>,
+    /// Time averages of P, [p][4].
+    pub mean_stress: Vec<F8>,
+    /// Between the two factors of a transfer.
+    pub between: Vec<F8>,
+    /// Q at the nodes, [a][6].
+    fitted: Vec<F8>,
+}
+
+impl Arrays {
+    /// For at most `points` points a cell and m nodes a direction.
+    pub fn new(points: usize, m: usize, method: &Method, sources: bool) -> Self {
+        let Method::Ader { time, sweeps } = method else { return Self::default() };
+        let zeros = |fields: usize| vec![F8::ZERO; fields * points];
+        Self {
+            start: zeros(6),
+            shifted: if sources { zeros(6) } else { vec![] },
+            rates: [zeros(6 * sweeps.widest()), zeros(6 * sweeps.widest())],
+            q: zeros(6),
+            source: if sources { zeros(2 * time.len()) } else { vec![] },
+            mean: zeros(6),
+            mean_stress: zeros(4),
+            between: vec![F8::ZERO; transfer::factors(m, points, 6)],
+            fitted: vec![F8::ZERO; 6 * m * m],
+        }
+    }
+}
+
+/// What the predictor of a block needs beside its arrays.
+pub struct Predictor<'a, M, C> {
+    /// The law.
+    pub law: &'a M,
+    /// Matrices of its points.
+    pub matrices: &'a PointMatrices<C>,
+    /// dxi_b/dX_a, see [`crate::operators::Points::metric_of`].
+    pub metric: &'a [F8],
+    /// Weights of the time nodes.
+    pub weights: &'a [f64],
+    /// The schedule.
+    pub sweeps: &'a Sweeps,
+    /// Step, s.
+    pub dt: f64,
+    /// The instruction set.
+    pub kernel: Kernel,
+}
+
+/// dt times a row of a sweep's matrix; at most 7 time nodes.
+type Row = [f64; 8];
+
+impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
+    /// From `start` to the time averages `mean`, `mean_stress`.
+    #[inline(always)]
+    pub fn run<L: Lanes>(&self, arrays: &mut Arrays) {
+        let (np, times) = (self.matrices.points(), self.weights.len());
+        // One metric for all points turns P to the axes of the cell before it is differentiated: fewer products.
+        let constant = (self.metric.len() == 4).then(|| load_array::<L, 4>(self.metric));
+        for sweep in &self.sweeps.inner {
+            for s in 0..sweep.to {
+                self.shift::<L>(arrays, &sweep.sources[s * times..(s + 1) * times]);
+                let Arrays { start, shifted, rates: [before, _], q, .. } = arrays;
+                let base = if shifted.is_empty() { &start[..6 * np] } else { &shifted[..6 * np] };
+                let row = self.row(&sweep.rates[s * sweep.from..(s + 1) * sweep.from]);
+                match constant {
+                    Some(metric) => self.sample::<L>(base, before, &row[..sweep.from], Turned(metric), q),
+                    None => self.sample::<L>(base, before, &row[..sweep.from], Plain, q),
+                }
+                if self.matrices.is_overdetermined() {
+                    self.fit(arrays);
+                }
+                let Arrays { rates: [_, now], q, .. } = arrays;
+                let (q, out) = (&q[..6 * np], &mut now[6 * np * s..6 * np * (s + 1)]);
+                self.kernel.run(Rates { matrices: self.matrices, metric: self.metric, q, out });
+            }
+            let [before, now] = &mut arrays.rates;
+            std::mem::swap(before, now);
+        }
+        self.average::<L>(arrays);
+    }
+
+    /// Q <- G2P P2G Q.
+    #[inline(always)]
+    fn fit(&self, arrays: &mut Arrays) {
+        let Arrays { q, between, fitted, .. } = arrays;
+        let q = &mut q[..6 * self.matrices.points()];
+        self.kernel.run(ToNodes::<C, 6> { matrices: self.matrices, points: q, between, nodes: fitted });
+        self.kernel.run(ToPoints::<C, 6> { matrices: self.matrices, nodes: fitted, between, points: q });
+    }
+
+    /// dt times the entries of a row.
+    #[inline(always)]
+    fn row(&self, entries: &[f64]) -> Row {
+        let mut out = [0.0; 8];
+        for (out, entry) in out.iter_mut().zip(entries) {
+            *out = self.dt * entry;
+        }
+        out
+    }
+
+    /// U^n + dt rho0 sum_k B[k] b_k, where there are sources.
+    #[inline(always)]
+    fn shift<L: Lanes>(&self, arrays: &mut Arrays, row: &[f64]) {
+        if arrays.shifted.is_empty() {
+            return;
+        }
+        let np = self.matrices.points();
+        arrays.shifted[..6 * np].copy_from_slice(&arrays.start[..6 * np]);
+        for (k, entry) in row.iter().enumerate() {
+            let factor = L::splat(self.dt * self.law.density() * entry);
+            for p in 0..np {
+                for i in 0..2 {
+                    let (b, u) = (&arrays.source[2 * (k * np + p) + i], &mut arrays.shifted[6 * p + 4 + i]);
+                    factor.mul_add(L::load(b), L::load(u)).store(u);
+                }
+            }
+        }
+    }
+
+    /// u = U^n + dt sum_k W[k] r_k at one time node, and Q of it.
+    #[inline(always)]
+    fn sample<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], turn: impl Turn<L>, q: &mut [F8]) {
+        let inverse_density = L::splat(1.0 / self.law.density());
+        let size = base.len();
+        for (p, (base, q)) in base.as_chunks::<6>().0.iter().zip(q.as_chunks_mut::<6>().0).enumerate() {
+            let mut u = load_array::<L, 6>(base);
+            for (k, factor) in row.iter().enumerate() {
+                let (factor, rate) = (L::splat(*factor), &before[k * size + 6 * p..k * size + 6 * p + 6]);
+                for i in 0..6 {
+                    u[i] = factor.mul_add(L::load(&rate[i]), u[i]);
+                }
+            }
+            let stress = turn.apply(self.law.stress([u[0], u[1], u[2], u[3]], &mut []));
+            let v = [u[4] * inverse_density, u[5] * inverse_density];
+            store_array([stress[0], stress[1], v[0], v[1], stress[2], stress[3]], q);
+        }
+    }
+
+    /// Time averages of F, v and P = P(F) over the time nodes. That of u is linear in the rates.
+    #[inline(always)]
+    fn average<L: Lanes>(&self, arrays: &mut Arrays) {
+        let (np, sweeps, last) = (self.matrices.points(), self.sweeps, &self.sweeps.last);
+        let (size, inverse_density) = (6 * np, L::splat(1.0 / self.law.density()));
+        self.shift::<L>(arrays, &sweeps.mean_sources);
+        let Arrays { start, shifted, rates: [before, _], mean, mean_stress, .. } = arrays;
+        let base = if shifted.is_empty() { &start[..size] } else { &shifted[..size] };
+        let mean_row = self.row(&sweeps.mean_rates);
+        let mut rows = [Row::default(); 8];
+        for s in 0..last.to {
+            rows[s] = self.row(&last.rates[s * last.from..(s + 1) * last.from]);
+        }
+        for p in 0..np {
+            let mut u = load_array::<L, 6>(&base[6 * p..6 * p + 6]);
+            for k in 0..last.from {
+                let (factor, rate) = (L::splat(mean_row[k]), &before[k * size + 6 * p..k * size + 6 * p + 6]);
+                for i in 0..6 {
+                    u[i] = factor.mul_add(L::load(&rate[i]), u[i]);
+                }
+            }
+            let v = [u[4] * inverse_density, u[5] * inverse_density];
+            store_array([u[0], u[1], u[2], u[3], v[0], v[1]], &mut mean[6 * p..6 * p + 6]);
+            let mut sum = [L::zero(); 4];
+            for (row, weight) in rows.iter().zip(self.weights) {
+                // Sources do not act on F: U^n itself.
+                let mut f = load_array::<L, 4>(&start[6 * p..6 * p + 4]);
+                for k in 0..last.from {
+                    let (factor, rate) = (L::splat(row[k]), &before[k * size + 6 * p..k * size + 6 * p + 4]);
+                    for i in 0..4 {
+                        f[i] = factor.mul_add(L::load(&rate[i]), f[i]);
+                    }
+                }
+                let (weight, stress) = (L::splat(*weight), self.law.stress(f, &mut []));
+                for i in 0..4 {
+                    sum[i] = weight.mul_add(stress[i], sum[i]);
+                }
+            }
+            store_array(sum, &mut mean_stress[4 * p..4 * p + 4]);
+        }
+    }
+}
+
+/// From P to what is differentiated along xi1 (first two) and xi2.
+trait Turn<L>: Copy {
+    /// [along xi1 of row 1, of row 2, along xi2 of row 1, of row 2].
+    fn apply(self, stress: [L; 4]) -> [L; 4];
+}
+
+/// dxi_b/dX_a P_ia, with the same metric [b][a] at all points.
+#[derive(Clone, Copy)]
+struct Turned<L>([L; 4]);
+
+impl<L: Lanes> Turn<L> for Turned<L> {
+    #[inline(always)]
+    fn apply(self, p: [L; 4]) -> [L; 4] {
+        let m = self.0;
+        [
+            m[0].mul_add(p[0], m[1] * p[1]),
+            m[0].mul_add(p[2], m[1] * p[3]),
+            m[2].mul_add(p[0], m[3] * p[1]),
+            m[2].mul_add(p[2], m[3] * p[3]),
+        ]
+    }
+}
+
+/// P_i1, P_i2.
+#[derive(Clone, Copy)]
+struct Plain;
+
+impl<L: Lanes> Turn<L> for Plain {
+    #[inline(always)]
+    fn apply(self, p: [L; 4]) -> [L; 4] {
+        [p[0], p[2], p[1], p[3]]
+    }
+}
