@@ -145,22 +145,25 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
     }
 
-    /// u = U^n + dt sum_k W[k] r_k at one time node, and Q of it.
+    /// u = U^n + dt sum_k W[k] r_k at one time node, and Q of it. F and the law first, then v: together they would need
+    /// more registers than there are.
     #[inline(always)]
     fn sample<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], turn: impl Turn<L>, q: &mut [F8]) {
+        let (base, before) = (base.as_chunks::<6>().0, before.as_chunks::<6>().0);
+        let q = &mut q.as_chunks_mut::<6>().0[..base.len()];
+        for p in 0..base.len() {
+            let f = state::<L, 0, 4>(base, before, row, p);
+            let stress = turn.apply(self.law.stress(f, &mut []));
+            stress[0].store(&mut q[p][0]);
+            stress[1].store(&mut q[p][1]);
+            stress[2].store(&mut q[p][4]);
+            stress[3].store(&mut q[p][5]);
+        }
         let inverse_density = L::splat(1.0 / self.law.density());
-        let size = base.len();
-        for (p, (base, q)) in base.as_chunks::<6>().0.iter().zip(q.as_chunks_mut::<6>().0).enumerate() {
-            let mut u = load_array::<L, 6>(base);
-            for (k, factor) in row.iter().enumerate() {
-                let (factor, rate) = (L::splat(*factor), &before[k * size + 6 * p..k * size + 6 * p + 6]);
-                for i in 0..6 {
-                    u[i] = factor.mul_add(L::load(&rate[i]), u[i]);
-                }
-            }
-            let stress = turn.apply(self.law.stress([u[0], u[1], u[2], u[3]], &mut []));
-            let v = [u[4] * inverse_density, u[5] * inverse_density];
-            store_array([stress[0], stress[1], v[0], v[1], stress[2], stress[3]], q);
+        for p in 0..base.len() {
+            let momentum = state::<L, 4, 2>(base, before, row, p);
+            (momentum[0] * inverse_density).store(&mut q[p][2]);
+            (momentum[1] * inverse_density).store(&mut q[p][3]);
         }
     }
 
@@ -168,43 +171,52 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
     #[inline(always)]
     fn average<L: Lanes>(&self, arrays: &mut Arrays) {
         let (np, sweeps, last) = (self.matrices.points(), self.sweeps, &self.sweeps.last);
-        let (size, inverse_density) = (6 * np, L::splat(1.0 / self.law.density()));
+        let inverse_density = L::splat(1.0 / self.law.density());
         self.shift::<L>(arrays, &sweeps.mean_sources);
         let Arrays { start, shifted, rates: [before, _], mean, mean_stress, .. } = arrays;
-        let base = if shifted.is_empty() { &start[..size] } else { &shifted[..size] };
+        let base = if shifted.is_empty() { &*start } else { &*shifted };
+        let (start, base, before) = (start.as_chunks::<6>().0, base.as_chunks::<6>().0, before.as_chunks::<6>().0);
+        let (start, base) = (&start[..np], &base[..np]);
         let mean_row = self.row(&sweeps.mean_rates);
+        for (p, mean) in mean.as_chunks_mut::<6>().0[..np].iter_mut().enumerate() {
+            let u = state::<L, 0, 6>(base, before, &mean_row[..last.from], p);
+            store_array([u[0], u[1], u[2], u[3], u[4] * inverse_density, u[5] * inverse_density], mean);
+        }
         let mut rows = [Row::default(); 8];
         for s in 0..last.to {
             rows[s] = self.row(&last.rates[s * last.from..(s + 1) * last.from]);
         }
-        for p in 0..np {
-            let mut u = load_array::<L, 6>(&base[6 * p..6 * p + 6]);
-            for k in 0..last.from {
-                let (factor, rate) = (L::splat(mean_row[k]), &before[k * size + 6 * p..k * size + 6 * p + 6]);
-                for i in 0..6 {
-                    u[i] = factor.mul_add(L::load(&rate[i]), u[i]);
-                }
-            }
-            let v = [u[4] * inverse_density, u[5] * inverse_density];
-            store_array([u[0], u[1], u[2], u[3], v[0], v[1]], &mut mean[6 * p..6 * p + 6]);
+        for (p, mean_stress) in mean_stress.as_chunks_mut::<4>().0[..np].iter_mut().enumerate() {
             let mut sum = [L::zero(); 4];
             for (row, weight) in rows.iter().zip(self.weights) {
-                // Sources do not act on F: U^n itself.
-                let mut f = load_array::<L, 4>(&start[6 * p..6 * p + 4]);
-                for k in 0..last.from {
-                    let (factor, rate) = (L::splat(row[k]), &before[k * size + 6 * p..k * size + 6 * p + 4]);
-                    for i in 0..4 {
-                        f[i] = factor.mul_add(L::load(&rate[i]), f[i]);
-                    }
-                }
+                // Sources do not act on F: from U^n itself.
+                let f = state::<L, 0, 4>(start, before, &row[..last.from], p);
                 let (weight, stress) = (L::splat(*weight), self.law.stress(f, &mut []));
                 for i in 0..4 {
                     sum[i] = weight.mul_add(stress[i], sum[i]);
                 }
             }
-            store_array(sum, &mut mean_stress[4 * p..4 * p + 4]);
+            store_array(sum, mean_stress);
         }
     }
+}
+
+/// Fields FIRST to FIRST + K of base + sum_k row[k] r_k at point p.
+#[inline(always)]
+fn state<L: Lanes, const FIRST: usize, const K: usize>(
+    base: &[[F8; 6]],
+    before: &[[F8; 6]],
+    row: &[f64],
+    p: usize,
+) -> [L; K] {
+    let mut u = load_array::<L, K>(&base[p][FIRST..]);
+    for (k, factor) in row.iter().enumerate() {
+        let (factor, rate) = (L::splat(*factor), &before[k * base.len() + p]);
+        for i in 0..K {
+            u[i] = factor.mul_add(L::load(&rate[FIRST + i]), u[i]);
+        }
+    }
+    u
 }
 
 /// From P to what is differentiated along xi1 (first two) and xi2.
