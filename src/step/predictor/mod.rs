@@ -151,19 +151,19 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
     fn sample<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], turn: impl Turn<L>, q: &mut [F8]) {
         let (base, before) = (base.as_chunks::<6>().0, before.as_chunks::<6>().0);
         let q = &mut q.as_chunks_mut::<6>().0[..base.len()];
-        for p in 0..base.len() {
+        for (p, q) in q.iter_mut().enumerate() {
             let f = state::<L, 0, 4>(base, before, row, p);
             let stress = turn.apply(self.law.stress(f, &mut []));
-            stress[0].store(&mut q[p][0]);
-            stress[1].store(&mut q[p][1]);
-            stress[2].store(&mut q[p][4]);
-            stress[3].store(&mut q[p][5]);
+            stress[0].store(&mut q[0]);
+            stress[1].store(&mut q[1]);
+            stress[2].store(&mut q[4]);
+            stress[3].store(&mut q[5]);
         }
         let inverse_density = L::splat(1.0 / self.law.density());
-        for p in 0..base.len() {
+        for (p, q) in q.iter_mut().enumerate() {
             let momentum = state::<L, 4, 2>(base, before, row, p);
-            (momentum[0] * inverse_density).store(&mut q[p][2]);
-            (momentum[1] * inverse_density).store(&mut q[p][3]);
+            (momentum[0] * inverse_density).store(&mut q[2]);
+            (momentum[1] * inverse_density).store(&mut q[3]);
         }
     }
 
@@ -183,8 +183,8 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
             store_array([u[0], u[1], u[2], u[3], u[4] * inverse_density, u[5] * inverse_density], mean);
         }
         let mut rows = [Row::default(); 8];
-        for s in 0..last.to {
-            rows[s] = self.row(&last.rates[s * last.from..(s + 1) * last.from]);
+        for (s, row) in rows.iter_mut().enumerate().take(last.to) {
+            *row = self.row(&last.rates[s * last.from..(s + 1) * last.from]);
         }
         for (p, mean_stress) in mean_stress.as_chunks_mut::<4>().0[..np].iter_mut().enumerate() {
             let mut sum = [L::zero(); 4];
