@@ -74,7 +74,8 @@ pub trait Lane:
     fn inverse_cube_root(self) -> Self {
         let mut y = self.inverse_cube_root_guess();
         for _ in 0..2 {
-            let e = Self::splat(1.0) - self * y * y * y;
+            // (x y) and y^2 side by side: a shorter chain than x y y y.
+            let e = (-(self * y)).mul_add(y * y, Self::splat(1.0));
             let series = e.mul_add(Self::splat(14.0 / 81.0), Self::splat(2.0 / 9.0));
             y = (y * e).mul_add(e.mul_add(series, Self::splat(1.0 / 3.0)), y);
         }

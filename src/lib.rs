@@ -18,8 +18,9 @@
 //! moving-least-squares functions chi_p (18) on the full Q_N ([`basis::mls`]). A step ([`step`]) is:
 //!
 //! 1. grid to points (22): U_p = sum_a Phi_a(X_p) U_a;
-//! 2. local predictor (15)-(21): at the time nodes tau_s, by N+1 Picard sweeps
-//!    u_s,p <- U_p + dt sum_k At\[s,k\] r_k,p, with r = (Grad v, Div P + rho0 b) by derivatives of chi;
+//! 2. local predictor (15)-(21): at the time nodes tau_s, by Picard sweeps u_s,p <- U_p + dt sum_k At\[s,k\] r_k,p, with
+//!    r = (Grad v, Div P + rho0 b) by derivatives of chi; the paper's N+1 sweeps on all nodes, or the ladder of N sweeps
+//!    with one node more each ([`step::sweeps`]; not in the paper, the default where N_T = N);
 //! 3. time averages of F, v and P at the points, to the grid by chi_p(X_a) (18);
 //! 4. corrector (11)-(14): U_a += dt [ sum_b K_alpha\[a,b\] Flux_alpha(q_b) - faces ], one flux ([`riemann`],
 //!    [`boundary`]) per face point and step, from averaged traces;

@@ -113,3 +113,20 @@ fn points_on_the_gauss_nodes_give_the_run_of_dgfem() {
     let (a, b) = (relative(&sigma, &other_sigma), relative(&v, &other_v));
     assert!(a < 1e-12 && b < 1e-12, "{a:e} {b:e}");
 }
+
+#[test]
+fn the_ladder_gives_the_lines_of_the_papers_sweeps() {
+    // The prototype had 1.5e-3 (S1) and 3e-5 (S2) relative L2 along the bottom line.
+    for (degree, bound) in [(1, 3e-3), (2, 1e-4)] {
+        let line = |sweeps: &str| {
+            let outcome = impact("ader-dgmpm", degree, &[&format!("scheme.sweeps={sweeps}")]);
+            let line = outcome.line("bottom", END);
+            (line.column("cauchy_stress_11"), line.column("velocity_1"))
+        };
+        let ((sigma, v), (other_sigma, other_v)) = (line("ladder"), line("paper"));
+        let (a, b) = (relative(&sigma, &other_sigma), relative(&v, &other_v));
+        println!("S{degree}: sigma11 {a:.2e}, v1 {b:.2e}");
+        // They are two schedules, not one.
+        assert!(a > 1e-9 && a < bound && b < bound, "S{degree}: {a:e} {b:e}");
+    }
+}

@@ -53,8 +53,46 @@ impl MovingLeastSquares {
     }
 
     fn combine(&self, basis: &[f64]) -> Vec<f64> {
-        self.inverse.column_iter().map(|column| column.iter().zip(basis).map(|(a, b)| a * b).sum()).collect()
+        combine(&self.inverse, basis)
     }
+}
+
+/// The fit of P_N to points of a line. On a lattice chi is the product of the functions of its two lines.
+#[derive(Debug, Clone)]
+pub struct LineFit {
+    degree: usize,
+    inverse: DMatrix<f64>,
+}
+
+impl LineFit {
+    /// Fits P_N to points at `x`; none where they cannot carry it well enough for the rank of a product of two lines to
+    /// be beyond doubt.
+    pub fn new(degree: usize, x: &[f64]) -> Option<Self> {
+        let rows: Vec<Vec<f64>> = x.iter().map(|&x| legendre(degree, x).0).collect();
+        if rows.len() <= degree {
+            return None;
+        }
+        let matrix = DMatrix::from_fn(x.len(), degree + 1, |p, m| rows[p][m]);
+        let svd = matrix.clone().try_svd(false, false, f64::EPSILON, 0)?;
+        if svd.singular_values.min() <= RANK_TOLERANCE.sqrt() * svd.singular_values.max() {
+            return None;
+        }
+        Some(Self { degree, inverse: inverse(matrix)? })
+    }
+
+    /// chi_p(x) for each point p.
+    pub fn values(&self, x: f64) -> Vec<f64> {
+        combine(&self.inverse, &legendre(self.degree, x).0)
+    }
+
+    /// chi_p'(x) for each point p.
+    pub fn derivatives(&self, x: f64) -> Vec<f64> {
+        combine(&self.inverse, &legendre(self.degree, x).1)
+    }
+}
+
+fn combine(inverse: &DMatrix<f64>, basis: &[f64]) -> Vec<f64> {
+    inverse.column_iter().map(|column| column.iter().zip(basis).map(|(a, b)| a * b).sum()).collect()
 }
 
 /// Pmat^+ = R^-1 Q^T of a matrix of full column rank. Not from singular vectors: the SVD at hand is off by up to 1e-8 where

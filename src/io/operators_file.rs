@@ -13,7 +13,7 @@ use crate::operators::{Blocks, Needs, Sampling, Stored};
 
 /// The format of the stored matrices.
 pub const FORMAT: Format =
-    Format { name: "dgmpm operators", version: 1, remedy: "write it again by `dgmpm preprocess`" };
+    Format { name: "dgmpm operators", version: 2, remedy: "write it again by `dgmpm preprocess`" };
 
 /// The key: a hash of mesh, pairs of periodic groups, cloud (or nodes), degree, the law of each cell, and which
 /// matrices are asked for.

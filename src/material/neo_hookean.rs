@@ -36,8 +36,8 @@ impl NeoHookean {
         let squares = f[0].mul_add(f[0], f[1] * f[1]) + f[2].mul_add(f[2], f[3] * f[3]);
         let invariant = squares + L::splat(1.0);
         let a = root2 * L::splat(self.mu);
-        // 1/J = (J^(-1/3))^3 saves the division.
-        let third = a * invariant * (root2 * root) * L::splat(-1.0 / 3.0);
+        // 1/J = (J^(-1/3))^3 saves the division; what does not wait for the root stands in one factor.
+        let third = (invariant * L::splat(-self.mu / 3.0) * root2) * (root2 * root);
         let b = (j - L::splat(1.0)).mul_add(L::splat(self.kappa), third);
         Terms { j, invariant, a, b }
     }

@@ -29,6 +29,25 @@ impl<C: Coefficient> Matrix<C> {
     }
 }
 
+impl Matrix<f64> {
+    /// The product with another, which has as many rows as this has columns.
+    pub fn times(&self, other: &Self) -> Self {
+        let entry = |r: usize, c: usize| (0..self.columns).map(|k| self.row(r)[k] * other.row(k)[c]).sum();
+        let data = (0..self.rows).flat_map(|r| (0..other.columns).map(move |c| (r, c)));
+        Self::new(self.rows, other.columns, data.map(|(r, c)| entry(r, c)).collect())
+    }
+
+    /// The Kronecker product: entry (i R + j, k C + l) is self(i, k) other(j, l), R x C the shape of the other.
+    pub fn kron(&self, other: &Self) -> Self {
+        let (rows, columns) = (self.rows * other.rows, self.columns * other.columns);
+        let entry = |r: usize, c: usize| {
+            self.row(r / other.rows)[c / other.columns] * other.row(r % other.rows)[c % other.columns]
+        };
+        let data = (0..rows).flat_map(|r| (0..columns).map(move |c| (r, c)));
+        Self::new(rows, columns, data.map(|(r, c)| entry(r, c)).collect())
+    }
+}
+
 impl Matrix<F8> {
     /// One matrix per lane; all have the same shape.
     pub fn interleave(lanes: [&Matrix<f64>; LANES]) -> Self {

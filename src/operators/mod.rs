@@ -5,6 +5,7 @@ pub mod certificate;
 pub mod curl_free;
 pub mod geometry;
 pub mod matrix;
+pub mod point_matrices;
 pub mod points;
 pub mod stored;
 
@@ -13,7 +14,8 @@ pub use certificate::Certificate;
 pub use curl_free::CurlFree;
 pub use geometry::Geometry;
 pub use matrix::{Matrix, Pool, Share};
-pub use points::{PointMatrices, Points, Sampling};
+pub use point_matrices::PointMatrices;
+pub use points::{Points, Sampling};
 pub use stored::Stored;
 
 use crate::basis::Lagrange;

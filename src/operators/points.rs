@@ -1,11 +1,10 @@
 //! Transfer between material points and grid nodes (18), (22) and derivatives at the points (20).
 
-use super::matrix::{Matrix, Pool, classes};
-use super::{Blocks, Line};
-use crate::basis::MovingLeastSquares;
+use super::matrix::{Pool, Share, classes};
+use super::{Blocks, Line, PointMatrices};
 use crate::cloud::Cloud;
 use crate::error::Error;
-use crate::lane::{Coefficient, F8, LANES};
+use crate::lane::{F8, LANES};
 use crate::mesh::{Mesh, map};
 use rayon::prelude::*;
 
@@ -36,38 +35,17 @@ impl<'a> Sampling<'a> {
 /// Matrices of the points of all blocks.
 pub type PointPool = Pool<PointMatrices<f64>, PointMatrices<F8>>;
 
-/// Matrices of one class of clouds, in parent coordinates.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PointMatrices<C> {
-    /// P2G at the nodes: chi_p(xi_a), (N+1)^2 x N_p.
-    pub to_nodes: Matrix<C>,
-    /// G2P: Phi_a(xi_p), N_p x (N+1)^2.
-    pub from_nodes: Matrix<C>,
-    /// d chi_q / d xi_b (xi_p), N_p x N_p, b = 1, 2.
-    pub slope: [Matrix<C>; 2],
-}
-
-impl<C: Coefficient> PointMatrices<C> {
-    /// N_p, the points of a cell (of the fullest cell of the block).
-    pub fn points(&self) -> usize {
-        self.from_nodes.rows
-    }
-
-    /// All matrices in the order of storage.
-    pub fn matrices(&self) -> [&Matrix<C>; 4] {
-        [&self.to_nodes, &self.from_nodes, &self.slope[0], &self.slope[1]]
-    }
-}
-
 /// The points of all blocks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
     /// Matrices by class.
     pub pool: PointPool,
-    /// First entry of each block in `metric`, in points (length: blocks + 1).
+    /// First point of each block in `parent` (length: blocks + 1).
     pub first: Vec<usize>,
-    /// dxi_b/dX_a at the points, 1/m: `[point of block][b][a]`.
-    pub metric: Vec<F8>,
+    /// First entry of each block in `metric` (length: blocks + 1).
+    first_metric: Vec<usize>,
+    /// dxi_b/dX_a, 1/m: `[b][a]` at each point, or once a block, or not at all.
+    metric: Vec<F8>,
     /// Parent coordinates of the points: `[point of block][2]`.
     pub parent: Vec<F8>,
 }
@@ -82,35 +60,49 @@ impl Points {
         let of = |cell: usize| sampling.of(&nodes, cell);
         let (class, examples) = sampling.classes(&nodes, mesh.cells.len());
         let build = |&cell: &usize| match sampling {
-            Sampling::Nodes => Ok(at_nodes(line)),
-            Sampling::Cloud(_) => at_points(line, of(cell), mesh.number(cell)),
+            Sampling::Nodes => Ok(PointMatrices::at_nodes(line)),
+            Sampling::Cloud(_) => PointMatrices::at_points(line, of(cell), mesh.number(cell)),
         };
         let all = examples.par_iter().map(build).collect::<Result<Vec<_>, Error>>()?;
-        Ok(Pool::new(&blocks.cells, &class, all, interleave))
+        Ok(Pool::new(&blocks.cells, &class, all, PointMatrices::interleave))
     }
 
     /// Adds the metric terms to the matrices.
     pub fn new(mesh: &Mesh, blocks: &Blocks, line: &Line, sampling: Sampling, pool: PointPool) -> Self {
         let nodes = line.nodes();
         let of = |cell: usize| sampling.of(&nodes, cell);
-        let mut out = Self { pool, first: vec![0], metric: vec![], parent: vec![] };
-        for cells in &blocks.cells {
+        let mut out = Self { pool, first: vec![0], first_metric: vec![0], metric: vec![], parent: vec![] };
+        for (block, cells) in blocks.cells.iter().enumerate() {
             let padded = cells.map(|cell| of(cell).len()).into_iter().max().unwrap_or(0);
+            let mut metric = Vec::with_capacity(padded);
             for p in 0..padded {
-                out.push(cells.map(|cell| (mesh.corners(cell), *of(cell).get(p).unwrap_or(&of(cell)[0]))));
+                let xi = cells.map(|cell| *of(cell).get(p).unwrap_or(&of(cell)[0]));
+                metric.push(inverse(cells.map(|cell| mesh.corners(cell)), xi));
+                out.parent.extend((0..2).map(|k| F8(xi.map(|xi| xi[k]))));
             }
+            out.hold(block, metric);
             out.first.push(out.parent.len() / 2);
+            out.first_metric.push(out.metric.len());
         }
         out
     }
 
-    fn push(&mut self, at: [([[f64; 2]; 4], [f64; 2]); LANES]) {
-        let inverse = at.map(|(corners, xi)| {
-            let [first, second] = map::inverse(&map::jacobian(&corners, xi));
-            [first[0], first[1], second[0], second[1]]
-        });
-        self.metric.extend((0..4).map(|k| F8(inverse.map(|m| m[k]))));
-        self.parent.extend((0..2).map(|k| F8(at.map(|(_, xi)| xi[k]))));
+    /// Holds what the predictor needs of the metric of a block. Where each lane has its own dense matrices they take it
+    /// in, as derivatives along X; where it is the same at all points (affine cells, to rounding) one is enough.
+    fn hold(&mut self, block: usize, metric: Vec<[F8; 4]>) {
+        if let Share::Own(k) = self.pool.share[block]
+            && let PointMatrices::Dense { slope, .. } = &mut self.pool.own[k]
+        {
+            return turn(slope, &metric);
+        }
+        let count = if is_constant(&metric) { 1 } else { metric.len() };
+        self.metric.extend(metric[..count.min(metric.len())].as_flattened());
+    }
+
+    /// dxi_b/dX_a of a block, 1/m: `[b][a]` at each point; once, where it is the same at all points; not at all, where
+    /// the derivatives of its matrices are along X.
+    pub fn metric_of(&self, block: usize) -> &[F8] {
+        &self.metric[self.first_metric[block]..self.first_metric[block + 1]]
     }
 
     /// Bytes held.
@@ -121,68 +113,33 @@ impl Points {
     }
 }
 
-/// The Gauss nodes themselves as points.
-fn at_nodes(line: &Line) -> PointMatrices<f64> {
-    let n = line.m * line.m;
-    let identity: Vec<f64> = (0..n * n).map(|e| if e / n == e % n { 1.0 } else { 0.0 }).collect();
-    let slopes: Vec<[Vec<f64>; 2]> = (0..n).map(|a| line.basis.gradients_2d(line.basis.node_2d(a))).collect();
-    PointMatrices {
-        to_nodes: Matrix::new(n, n, identity.clone()),
-        from_nodes: Matrix::new(n, n, identity),
-        slope: [0, 1].map(|b| Matrix::new(n, n, slopes.iter().flat_map(|s| s[b].clone()).collect())),
-    }
+/// dxi_b/dX_a `[b][a]` at one point of each lane.
+fn inverse(corners: [[[f64; 2]; 4]; LANES], xi: [[f64; 2]; LANES]) -> [F8; 4] {
+    let inverse: [[[f64; 2]; 2]; LANES] =
+        std::array::from_fn(|lane| map::inverse(&map::jacobian(&corners[lane], xi[lane])));
+    std::array::from_fn(|k| F8(inverse.map(|m| m[k / 2][k % 2])))
 }
 
-/// Moving least squares on any unisolvent cloud.
-fn at_points(line: &Line, xi: &[[f64; 2]], number: u64) -> Result<PointMatrices<f64>, Error> {
-    let (n, np) = (line.m * line.m, xi.len());
-    let fit = MovingLeastSquares::new(line.m - 1, xi)?;
-    if fit.rank < n {
-        return Err(Error::input(
-            format!(
-                "cell {number} cannot carry degree {}: its {np} points have rank {}, needed is {n}",
-                line.m - 1,
-                fit.rank
-            ),
-            format!(
-                "put at least {} x {} points in general position into each cell, or lower scheme.degree",
-                line.m, line.m
-            ),
-        ));
-    }
-    let slopes: Vec<[Vec<f64>; 2]> = xi.iter().map(|&x| fit.gradients(x)).collect();
-    let to_nodes = (0..n).flat_map(|a| fit.values(line.basis.node_2d(a))).collect();
-    let from_nodes = xi.iter().flat_map(|&x| line.basis.values_2d(x)).collect();
-    Ok(PointMatrices {
-        to_nodes: Matrix::new(n, np, to_nodes),
-        from_nodes: Matrix::new(np, n, from_nodes),
-        slope: [0, 1].map(|b| Matrix::new(np, np, slopes.iter().flat_map(|s| s[b].clone()).collect())),
+/// Whether the metric is the same at all points but for rounding: cells that are given as parallelograms differ by 1e-15
+/// times the ratio of the size of the mesh to theirs.
+fn is_constant(metric: &[[F8; 4]]) -> bool {
+    (0..LANES).all(|lane| {
+        let size = metric.iter().flatten().fold(0.0_f64, |size, m| size.max(m.0[lane].abs()));
+        let near = |m: &[F8; 4]| (0..4).all(|k| (m[k].0[lane] - metric[0][k].0[lane]).abs() <= 1e-13 * size);
+        metric.iter().all(near)
     })
 }
 
-/// Eight different cells side by side. Cells with fewer points than the fullest get copies of their first point, which
-/// no fit uses (zero columns).
-fn interleave(lanes: [&PointMatrices<f64>; LANES]) -> PointMatrices<F8> {
-    let np = lanes.iter().map(|m| m.points()).max().unwrap_or(0);
-    let padded = lanes.map(|lane| PointMatrices {
-        to_nodes: pad(&lane.to_nodes, lane.to_nodes.rows, np),
-        from_nodes: pad(&lane.from_nodes, np, lane.from_nodes.columns),
-        slope: [0, 1].map(|b| pad(&lane.slope[b], np, np)),
-    });
-    PointMatrices {
-        to_nodes: Matrix::interleave(padded.each_ref().map(|m| &m.to_nodes)),
-        from_nodes: Matrix::interleave(padded.each_ref().map(|m| &m.from_nodes)),
-        slope: [0, 1].map(|b| Matrix::interleave(padded.each_ref().map(|m| &m.slope[b]))),
+/// From d/dxi_b to d/dX_a = sum_b dxi_b/dX_a d/dxi_b, row by row.
+fn turn(slope: &mut [super::Matrix<F8>; 2], metric: &[[F8; 4]]) {
+    let [first, second] = slope;
+    let columns = first.columns;
+    for (e, (a, b)) in first.data.iter_mut().zip(&mut second.data).enumerate() {
+        let m = &metric[e / columns];
+        for lane in 0..LANES {
+            let (x, y) = (a.0[lane], b.0[lane]);
+            a.0[lane] = m[0].0[lane] * x + m[2].0[lane] * y;
+            b.0[lane] = m[1].0[lane] * x + m[3].0[lane] * y;
+        }
     }
-}
-
-/// More rows by repeating the first, more columns by zeros.
-fn pad(matrix: &Matrix<f64>, rows: usize, columns: usize) -> Matrix<f64> {
-    let mut data = Vec::with_capacity(rows * columns);
-    for r in 0..rows {
-        let row = matrix.row(if r < matrix.rows { r } else { 0 });
-        data.extend_from_slice(row);
-        data.resize((r + 1) * columns, 0.0);
-    }
-    Matrix::new(rows, columns, data)
 }

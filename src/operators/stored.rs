@@ -28,12 +28,13 @@ impl Stored {
     }
 }
 
-/// Matrices that are stored together; one number, their size, gives all their shapes.
+/// Matrices that are stored together; one number, their size, gives their kind and all their shapes.
 pub trait Bundle<C: Coefficient>: Sized {
     /// The size.
     fn size(&self) -> usize;
     /// Shapes (rows, columns) for a size and n nodes a cell, in the order of storage.
-    fn shapes(size: usize, nodes: usize) -> Vec<(usize, usize)>;
+    /// None where no kind has that size.
+    fn shapes(size: usize, nodes: usize) -> Option<Vec<(usize, usize)>>;
     /// The matrices, in the order of storage.
     fn list(&self) -> Vec<&Matrix<C>>;
     /// Back from the matrices; none where their number is wrong.
@@ -41,18 +42,19 @@ pub trait Bundle<C: Coefficient>: Sized {
 }
 
 impl<C: Coefficient> Bundle<C> for PointMatrices<C> {
+    /// 3 count + kind of [`PointMatrices::kind`].
     fn size(&self) -> usize {
-        self.points()
+        let (kind, count) = self.kind();
+        3 * count + kind
     }
-    fn shapes(size: usize, nodes: usize) -> Vec<(usize, usize)> {
-        vec![(nodes, size), (size, nodes), (size, size), (size, size)]
+    fn shapes(size: usize, nodes: usize) -> Option<Vec<(usize, usize)>> {
+        PointMatrices::<C>::shapes(size % 3, size / 3, nodes.isqrt())
     }
     fn list(&self) -> Vec<&Matrix<C>> {
-        self.matrices().to_vec()
+        self.matrices()
     }
     fn from_list(list: Vec<Matrix<C>>) -> Option<Self> {
-        let [to_nodes, from_nodes, first, second] = list.try_into().ok()?;
-        Some(Self { to_nodes, from_nodes, slope: [first, second] })
+        PointMatrices::from_list(list)
     }
 }
 
@@ -60,8 +62,8 @@ impl<C: Coefficient> Bundle<C> for Matrix<C> {
     fn size(&self) -> usize {
         self.columns
     }
-    fn shapes(size: usize, nodes: usize) -> Vec<(usize, usize)> {
-        vec![(2 * nodes, size)]
+    fn shapes(size: usize, nodes: usize) -> Option<Vec<(usize, usize)>> {
+        Some(vec![(2 * nodes, size)])
     }
     fn list(&self) -> Vec<&Matrix<C>> {
         vec![self]
@@ -126,7 +128,7 @@ fn cut<C: Coefficient, B: Bundle<C>>(sizes: &[usize], nodes: usize, mut entries:
     let mut out = Vec::with_capacity(sizes.len());
     for &size in sizes {
         let mut list = Vec::new();
-        for (rows, columns) in B::shapes(size, nodes) {
+        for (rows, columns) in B::shapes(size, nodes)? {
             let (head, tail) = entries.split_at_checked(rows.checked_mul(columns)?)?;
             list.push(Matrix::new(rows, columns, head.to_vec()));
             entries = tail;

@@ -57,29 +57,121 @@ fn transfer_and_slopes_are_exact_on_q_n_for_any_cloud() {
         let cloud = seed::seed(seed::Layout::Jitter { seed: 3, amount: 0.3 }, degree + 2, 9);
         let operators = build(&mesh, degree, &cloud);
         let points = operators.points.as_ref().unwrap();
-        let pool = &points.pool;
         let power = degree as i32;
         let field = |xi: [f64; 2]| xi[0].powi(power) * xi[1].powi(power) - 0.3 * xi[0];
-        let slope = |xi: [f64; 2]| power as f64 * xi[0].powi(power - 1) * xi[1].powi(power) - 0.3;
+        let slope = |xi: [f64; 2]| {
+            let along = |b: usize| power as f64 * xi[b].powi(power - 1) * xi[1 - b].powi(power);
+            [along(0) - 0.3, along(1)]
+        };
         for (cell, &(block, lane)) in operators.blocks.slot.iter().enumerate() {
-            let all = |k: usize| -> (Vec<Matrix<f64>>, Vec<Matrix<F8>>) {
-                let shared = pool.shared.iter().map(|m| m.matrices()[k].clone()).collect();
-                (shared, pool.own.iter().map(|m| m.matrices()[k].clone()).collect())
-            };
-            let apply = |k: usize, rows: usize, input: &[f64]| -> Vec<f64> {
-                let (shared, own) = all(k);
-                let at = |r: usize, c: usize| entry(pool.share[block], &shared, &own, lane, r, c);
-                (0..rows).map(|r| input.iter().enumerate().map(|(c, x)| at(r, c) * x).sum()).collect()
+            let matrices = lane_of(points, block, lane);
+            let PointMatrices::Dense { to_nodes, from_nodes, slope: along } = &matrices else { panic!("a lattice") };
+            let apply = |m: &Matrix<f64>, rows: usize, input: &[f64]| -> Vec<f64> {
+                (0..rows).map(|r| input.iter().enumerate().map(|(c, x)| m.row(r)[c] * x).sum()).collect()
             };
             let at_points: Vec<f64> = cloud.of(cell).iter().map(|&xi| field(xi)).collect();
             let at_nodes: Vec<f64> = operators.line.nodes().into_iter().map(field).collect();
             let (np, n) = (at_points.len(), at_nodes.len());
             // Rounding times the condition of the fit (below 1e3) and, for slopes, of the derivative (below 1e2).
             let close = |a: &[f64], b: &[f64], bound: f64| a.iter().zip(b).all(|(a, b)| (a - b).abs() < bound);
-            assert!(close(&apply(0, n, &at_points), &at_nodes, 1e-12), "P2G {degree}");
-            assert!(close(&apply(1, np, &at_nodes), &at_points, 1e-13), "G2P {degree}");
-            let slopes: Vec<f64> = cloud.of(cell).iter().map(|&xi| slope(xi)).collect();
-            assert!(close(&apply(2, np, &at_points), &slopes, 1e-10), "slope {degree}");
+            assert!(close(&apply(to_nodes, n, &at_points), &at_nodes, 1e-12), "P2G {degree}");
+            assert!(close(&apply(from_nodes, np, &at_nodes), &at_points, 1e-13), "G2P {degree}");
+            // Where each lane has its own matrices the metric is in them. (The ninth cell is alone in its block, and so
+            // shares its matrices with the copies of it that fill the block.)
+            let alone = operators.blocks.count[block] == 1;
+            assert_eq!(points.metric_of(block).is_empty(), !alone);
+            for axis in 0..2 {
+                let exact = cloud.of(cell).iter().map(|&xi| {
+                    let inverse = map::inverse(&map::jacobian(&mesh.corners(cell), xi));
+                    let along = slope(xi)[0] * inverse[0][axis] + slope(xi)[1] * inverse[1][axis];
+                    if alone { slope(xi)[axis] } else { along }
+                });
+                // dxi/dX is 3 to 6 here.
+                let exact: Vec<f64> = exact.collect();
+                assert!(close(&apply(&along[axis], np, &at_points), &exact, 6e-10), "slope {degree}");
+            }
+        }
+    }
+}
+
+/// The matrices of one cell.
+fn lane_of(points: &Points, block: usize, lane: usize) -> PointMatrices<f64> {
+    match points.pool.share[block] {
+        Share::Shared(k) => points.pool.shared[k].clone(),
+        Share::Own(k) => points.pool.own[k].lane(lane),
+    }
+}
+
+/// Largest difference of all entries of two sets of matrices of one kind.
+fn difference(a: &PointMatrices<f64>, b: &PointMatrices<f64>) -> f64 {
+    let (a, b) = (a.matrices(), b.matrices());
+    assert_eq!(a.len(), b.len());
+    let all = |list: &[&Matrix<f64>]| list.iter().flat_map(|m| m.data.clone()).collect::<Vec<f64>>();
+    all(&a).iter().zip(all(&b)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn lattices_are_found_by_their_coordinates_and_their_factors_multiply_to_the_dense_matrices() {
+    for degree in 0..=5 {
+        let line = Line::new(degree);
+        for k in [degree + 1, degree + 2] {
+            let mut xi = seed::Layout::Midpoints.points(k, 0);
+            // Other coordinates along xi2 than along xi1.
+            xi.iter_mut().for_each(|xi| xi[1] *= 0.9);
+            let factors = PointMatrices::at_points(&line, &xi, 0).unwrap();
+            assert_eq!(factors.kind(), (1, k));
+            assert_eq!(factors.is_overdetermined(), k > degree + 1);
+            // The same points with xi1 fastest: any cloud.
+            let other = |p: usize| (p % k) * k + p / k;
+            let crossed: Vec<[f64; 2]> = (0..k * k).map(|p| xi[other(p)]).collect();
+            let dense = PointMatrices::at_points(&line, &crossed, 0).unwrap();
+            // A single point is the same in any order.
+            assert_eq!(dense.kind(), if k == 1 { (1, 1) } else { (0, k * k) });
+            let back = |m: &Matrix<f64>, rows: bool, columns: bool| {
+                let turn = |r: usize, yes: bool| if yes { other(r) } else { r };
+                let entry = |e: usize| m.row(turn(e / m.columns, rows))[turn(e % m.columns, columns)];
+                Matrix::new(m.rows, m.columns, (0..m.data.len()).map(entry).collect())
+            };
+            let PointMatrices::Dense { to_nodes, from_nodes, slope: [a, b] } = dense.to_dense() else { panic!() };
+            let turned = PointMatrices::Dense {
+                to_nodes: back(&to_nodes, false, true),
+                from_nodes: back(&from_nodes, true, false),
+                slope: [back(&a, true, true), back(&b, true, true)],
+            };
+            // Rounding times the condition of the fit, and up to 1e2 for derivatives of degree 5.
+            let found = difference(&factors.to_dense(), &turned);
+            assert!(found < 1e-11, "S{degree} {k}: {found:e}");
+        }
+    }
+}
+
+#[test]
+fn a_lattice_from_a_file_is_one_to_2_pow_minus_40_and_not_beyond() {
+    let line = Line::new(2);
+    let kind = |shift: f64| {
+        let mut xi = seed::Layout::Paper.points(3, 0);
+        xi[4][0] += shift;
+        PointMatrices::at_points(&line, &xi, 0).unwrap().kind()
+    };
+    assert_eq!(kind(2f64.powi(-41)), (1, 3));
+    assert_eq!(kind(2f64.powi(-38)), (0, 9));
+}
+
+#[test]
+fn affine_cells_hold_one_metric_and_bilinear_ones_one_a_point() {
+    for (mesh, count) in [(rectangle([2.0, 1.0], [3, 3]).unwrap(), 1), (distorted(), 9)] {
+        let operators = build(&mesh, 2, &seed::seed(seed::Layout::Paper, 3, 9));
+        let points = operators.points.as_ref().unwrap();
+        for (cell, &(block, lane)) in operators.blocks.slot.iter().enumerate() {
+            let metric = points.metric_of(block);
+            // The block of the ninth cell alone, padded with copies of it, is affine where that cell is.
+            assert!(metric.len() == 4 * count || operators.blocks.count[block] == 1, "{}", metric.len());
+            let xi = seed::Layout::Paper.points(3, cell)[0];
+            let inverse = map::inverse(&map::jacobian(&mesh.corners(cell), xi));
+            for (k, m) in metric[..4].iter().enumerate() {
+                // Rounding of coordinates of size 1 over cells of size .3.
+                assert!((m.0[lane] - inverse[k / 2][k % 2]).abs() < 1e-13, "{cell} {k}");
+            }
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Where names become types: from a scene to mesh, cloud, operators, scheme, initial state and observers.
 
 use super::{
-    Boundary, Condition, Curl, Expression, LAWS, Layout, Mesh as Source, Method, Output, Scene, Step, What, When,
+    Boundary, Condition, Curl, Expression, LAWS, Layout, Mesh as Source, Method, Output, Scene, Step, Sweeps, What,
+    When,
 };
 use crate::boundary::{self, Data};
 use crate::cloud::{self, Cloud, seed};
@@ -16,7 +17,7 @@ use crate::operators::{Needs, Operators, Sampling};
 use crate::run::{Folder, Settings};
 use crate::source::{self, BodyForce};
 use crate::state::{State, UNKNOWNS};
-use crate::step::{Method as Integration, Scheme, Tableau, cfl};
+use crate::step::{Method as Integration, Scheme, Sweeps as Picard, Tableau, cfl};
 use crate::tensor;
 use crate::{basis::TimeBasis, scene};
 use std::path::Path;
@@ -138,7 +139,12 @@ impl Scene {
         match self.scheme.method {
             Method::RkDgfem => Integration::RungeKutta(Tableau::of_degree(n_t)),
             Method::AderDgmpm | Method::AderDgfem => {
-                Integration::Ader { time: TimeBasis::new(n_t), sweeps: n.max(n_t) + 1 }
+                let time = TimeBasis::new(n_t);
+                let sweeps = match self.scheme.sweeps {
+                    Sweeps::Ladder => Picard::ladder(&time),
+                    Sweeps::Paper => Picard::paper(&time, n.max(n_t) + 1),
+                };
+                Integration::Ader { time, sweeps }
             }
         }
     }

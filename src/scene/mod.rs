@@ -195,7 +195,7 @@ pub struct Scheme {
     pub flux: Flux,
     /// The size of a step.
     pub step: Step,
-    /// The predictor's sweeps.
+    /// The predictor's sweeps; default ladder where N_T = N, else paper.
     pub sweeps: Sweeps,
 }
 

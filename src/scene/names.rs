@@ -17,5 +17,7 @@ names! {
     Sweeps {
         /// max(N, N_T) + 1 sweeps on all time nodes.
         Paper = "paper",
+        /// N sweeps, the j-th from j time nodes to j + 1, where N_T = N: fewer evaluations of the law (not in the paper).
+        Ladder = "ladder",
     }
 }

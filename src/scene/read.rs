@@ -90,7 +90,7 @@ fn scheme(table: &mut Reader) -> Result<Scheme> {
     let flux = table.choice("flux", Flux::NAMES, &[])?.unwrap_or(Flux::Rusanov);
     let cfl = table.number("cfl", POSITIVE)?;
     let safety = table.number("safety", POSITIVE)?;
-    let sweeps = table.choice("sweeps", Sweeps::NAMES, &["ladder"])?.unwrap_or(Sweeps::Paper);
+    let sweeps = table.choice("sweeps", Sweeps::NAMES, &[])?;
     table.finish()?;
     let names = "\"ader-dgmpm\", \"ader-dgfem\" or \"rk-dgfem\"";
     let method = method.ok_or_else(|| table.missing("method", &format!("choose {names}")))?;
@@ -103,7 +103,18 @@ fn scheme(table: &mut Reader) -> Result<Scheme> {
             return Err(table.wrong("safety", "[scheme] has both `cfl` and `safety`", remedy));
         }
     };
-    Ok(Scheme { method, degree, time_degree: time_degree.unwrap_or(degree), flux, step, sweeps })
+    let time_degree = time_degree.unwrap_or(degree);
+    let sweeps = match sweeps {
+        Some(Sweeps::Ladder) if time_degree != degree => {
+            let what = format!("the ladder needs time_degree = degree, and here they are {time_degree} and {degree}");
+            let remedy = "give sweeps = \"paper\" (the default where the degrees differ), or equal degrees";
+            return Err(table.wrong("sweeps", &what, remedy));
+        }
+        Some(sweeps) => sweeps,
+        None if time_degree == degree => Sweeps::Ladder,
+        None => Sweeps::Paper,
+    };
+    Ok(Scheme { method, degree, time_degree, flux, step, sweeps })
 }
 
 #[derive(Clone, Copy)]

@@ -53,7 +53,7 @@ fn defaults() {
         time_degree: 2,
         flux: Flux::Rusanov,
         step: Step::Safety(0.9),
-        sweeps: Sweeps::Paper,
+        sweeps: Sweeps::Ladder,
     };
     assert_eq!(scene.scheme, scheme);
     assert!(scene.outputs.is_empty() && scene.sources.is_empty());
@@ -201,6 +201,16 @@ fn groups() {
     assert!(found.starts_with("--set material.0.group=a: the mesh has no group \"a\""), "{found}");
     let found = some.check_groups(&[], &edges).unwrap_err().to_string();
     assert!(found.contains("no named group of cells"), "{found}");
+}
+
+#[test]
+fn the_ladder_needs_equal_degrees_and_the_papers_sweeps_do_not() {
+    let sweeps = |sets: &[&str]| parse(MINIMAL, sets).unwrap().scheme.sweeps;
+    assert_eq!(sweeps(&["scheme.time_degree=1"]), Sweeps::Paper);
+    assert_eq!(sweeps(&["scheme.time_degree=2"]), Sweeps::Ladder);
+    assert_eq!(sweeps(&["scheme.sweeps=paper"]), Sweeps::Paper);
+    let text = message(MINIMAL, &["scheme.sweeps=ladder", "scheme.time_degree=1"]);
+    assert!(text.contains("scheme.sweeps=ladder: the ladder needs time_degree = degree"), "{text}");
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
 
 use super::balance::{self, METERED, Sums};
-use super::dense::{add_scaled, apply, gather, interleave};
+use super::dense::{add_scaled, gather, interleave};
 use super::predictor::Predictor;
+use super::predictor::transfer::{ToNodes, ToPoints};
 use super::volume::{self, Metric};
 use super::{Method, Phase, Scheme, Scratch, Stage};
 use crate::lane::{Coefficient, F8, LANES, Lanes, Work, store_array};
@@ -120,23 +121,25 @@ impl Block<'_> {
         clock: &mut Instant,
     ) {
         let Method::Ader { time, sweeps } = &self.scheme.method else { return };
-        let first = points.first[self.block];
-        let n = self.scheme.operators.nodes();
+        let (kernel, n, np) = (self.scheme.kernel, self.scheme.operators.nodes(), matrices.points());
         let stride = self.rate.len();
         let start = &self.state.u[stride * self.block..stride * (self.block + 1)];
         interleave::<6>(start, n, &mut self.scratch.nodes.stage);
-        apply::<L, C, 6>(&matrices.from_nodes, &self.scratch.nodes.stage[..6 * n], &mut self.scratch.points.start);
+        let (nodes, arrays) = (&self.scratch.nodes.stage[..6 * n], &mut self.scratch.points);
+        kernel.run(ToPoints::<C, 6> { matrices, nodes, between: &mut arrays.between, points: &mut arrays.start });
         if !self.scheme.sources.is_empty() {
-            self.source_at_points(points, matrices.points());
+            self.source_at_points(points, np);
         }
         self.scratch.phases.book(Phase::GridToPoints, clock);
-        let metric = &points.metric[4 * first..4 * (first + matrices.points())];
-        let predictor = Predictor { law, matrices, metric, time, sweeps: *sweeps, dt: self.stage.dt };
+        let (metric, weights, dt) = (points.metric_of(self.block), &time.weights[..], self.stage.dt);
+        let predictor = Predictor { law, matrices, metric, weights, sweeps, dt, kernel };
         predictor.run::<L>(&mut self.scratch.points);
         self.scratch.phases.book(Phase::Predictor, clock);
-        let (points, nodes) = (&self.scratch.points, &mut self.scratch.nodes);
-        apply::<L, C, 6>(&matrices.to_nodes, &points.mean, &mut nodes.mean);
-        apply::<L, C, 4>(&matrices.to_nodes, &points.mean_stress, &mut nodes.mean_stress);
+        let (arrays, nodes) = (&mut self.scratch.points, &mut self.scratch.nodes);
+        let (points, between) = (&arrays.mean[..6 * np], &mut arrays.between);
+        kernel.run(ToNodes::<C, 6> { matrices, points, between, nodes: &mut nodes.mean });
+        let (points, between) = (&arrays.mean_stress[..4 * np], &mut arrays.between);
+        kernel.run(ToNodes::<C, 4> { matrices, points, between, nodes: &mut nodes.mean_stress });
         self.scratch.phases.book(Phase::PointsToGrid, clock);
     }
 

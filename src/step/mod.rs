@@ -15,6 +15,7 @@ pub mod phase;
 mod predictor;
 mod runge_kutta;
 mod survey;
+pub mod sweeps;
 mod volume;
 
 pub use balance::Balance;
@@ -22,6 +23,7 @@ pub use energy::Totals;
 pub use phase::{Phase, Phases};
 pub use runge_kutta::Tableau;
 pub use survey::{Loss, Survey};
+pub use sweeps::Sweeps;
 
 use crate::basis::TimeBasis;
 use crate::boundary::{Boundary, TimeNode};
@@ -42,8 +44,8 @@ pub enum Method {
     Ader {
         /// The time nodes and their integration matrix.
         time: TimeBasis,
-        /// Picard sweeps; max(N, N_T) + 1 by default.
-        sweeps: usize,
+        /// The schedule of its Picard sweeps.
+        sweeps: Sweeps,
     },
     /// Explicit Runge-Kutta: RK-DGFEM.
     RungeKutta(Tableau),
@@ -97,20 +99,16 @@ impl Work {
         let operators = &scheme.operators;
         let points =
             operators.points.as_ref().map_or(0, |p| p.first.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0));
-        let (stages, times) = match &scheme.method {
-            Method::Ader { time, .. } => (1, time.len()),
-            Method::RungeKutta(tableau) => (tableau.stages(), 1),
-        };
         let scratch = || {
             Mutex::new(Scratch {
-                points: predictor::Arrays::new(points, times, !scheme.sources.is_empty()),
+                points: predictor::Arrays::new(points, operators.line.m, &scheme.method, !scheme.sources.is_empty()),
                 nodes: volume::Arrays::new(operators.line.m, state.components),
                 phases: Phases::default(),
             })
         };
         Self {
             next: state.clone(),
-            rates: vec![vec![F8::ZERO; state.u.len()]; stages],
+            rates: vec![vec![F8::ZERO; state.u.len()]; scheme.stages()],
             traces: vec![F8::ZERO; operators.blocks.len() * 4 * operators.line.m * TRACE],
             balance: None,
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
@@ -160,6 +158,14 @@ fn sums(
     match balance {
         Some(sums) => Either::Left(sums.par_iter_mut().map(Some)),
         None => Either::Right((0..blocks).into_par_iter().map(|_| None)),
+    }
+}
+
+impl Method {
+    /// ADER of degree N_T in time for degree N in space, with the sweeps of [`Sweeps::of_degree`].
+    pub fn ader(degree: usize, time_degree: usize) -> Self {
+        let time = TimeBasis::new(time_degree);
+        Method::Ader { sweeps: Sweeps::of_degree(degree, &time), time }
     }
 }
 
@@ -252,3 +258,5 @@ impl Scheme {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod sweep_tests;

@@ -1,9 +1,10 @@
 //! The health of a state: current wave speeds (for dt and LCF), min J, and where stability was lost.
 
+use super::predictor::transfer::ToPoints;
 use super::{Phase, Scheme, Scratch, Work as Memory, dense, with_scratch};
 use crate::lane::{Coefficient, F8, Lanes, Work, load_array};
 use crate::material::Material;
-use crate::operators::{Matrix, Share};
+use crate::operators::{Matrix, PointMatrices, Share};
 use crate::state::State;
 use crate::tensor;
 use crate::with_law;
@@ -118,13 +119,11 @@ impl Scheme {
     /// Phi_a(xi_p) of one lane of a block; none for RK, where points are nodes.
     fn points_from_nodes(&self, block: usize, lane: usize) -> Option<Matrix<f64>> {
         let pool = &self.operators.points.as_ref()?.pool;
-        Some(match pool.share[block] {
-            Share::Shared(k) => pool.shared[k].from_nodes.clone(),
-            Share::Own(k) => {
-                let own = &pool.own[k].from_nodes;
-                Matrix::new(own.rows, own.columns, own.data.iter().map(|x| x.0[lane]).collect())
-            }
-        })
+        let one = match pool.share[block] {
+            Share::Shared(k) => pool.shared[k].to_dense(),
+            Share::Own(k) => pool.own[k].lane(lane).to_dense(),
+        };
+        if let PointMatrices::Dense { from_nodes, .. } = one { Some(from_nodes) } else { None }
     }
 }
 
@@ -151,13 +150,14 @@ impl Work for Block<'_> {
         let stride = self.state.components * operators.nodes();
         let u = &self.state.u[stride * self.block..stride * (self.block + 1)];
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
-        let (nodes, points) = (&mut self.scratch.nodes.stage, &mut self.scratch.points.start);
+        let (nodes, arrays) = (&mut self.scratch.nodes.stage, &mut self.scratch.points);
+        let (points, between) = (&mut arrays.start, &mut arrays.between);
         dense::interleave::<4>(u, operators.nodes(), nodes);
         let nodes = &nodes[..4 * operators.nodes()];
         let count = match operators.points.as_ref().map(|p| (p, p.pool.share[self.block])) {
             None => operators.nodes(),
-            Some((p, Share::Shared(k))) => to_points::<L, _>(&p.pool.shared[k].from_nodes, nodes, points),
-            Some((p, Share::Own(k))) => to_points::<L, _>(&p.pool.own[k].from_nodes, nodes, points),
+            Some((p, Share::Shared(k))) => to_points::<L, _>(&p.pool.shared[k], nodes, between, points),
+            Some((p, Share::Own(k))) => to_points::<L, _>(&p.pool.own[k], nodes, between, points),
         };
         let f = if operators.points.is_some() { &points[..4 * count] } else { &nodes[..4 * count] };
         let found = with_law!(law, law => examine::<L, _>(law, f, u));
@@ -168,9 +168,14 @@ impl Work for Block<'_> {
 
 /// F at the points; the number of points.
 #[inline(always)]
-fn to_points<L: Lanes, C: Coefficient>(from_nodes: &Matrix<C>, nodes: &[F8], points: &mut [F8]) -> usize {
-    dense::apply::<L, C, 4>(from_nodes, nodes, points);
-    from_nodes.rows
+fn to_points<L: Lanes, C: Coefficient>(
+    matrices: &PointMatrices<C>,
+    nodes: &[F8],
+    between: &mut [F8],
+    points: &mut [F8],
+) -> usize {
+    ToPoints::<C, 4> { matrices, nodes, between, points }.run::<L>();
+    matrices.points()
 }
 
 #[inline(always)]

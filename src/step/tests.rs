@@ -61,7 +61,7 @@ pub(super) fn scheme(
     let operators = Operators::build(mesh, &links(mesh).unwrap(), &vec![0; mesh.cells.len()], &needs).unwrap();
     let method = match kind {
         Kind::RkDgfem => Method::RungeKutta(Tableau::of_degree(degree)),
-        _ => Method::Ader { time: TimeBasis::new(degree), sweeps: degree + 1 },
+        _ => Method::ader(degree, degree),
     };
     let alpha = if degree >= 4 { 6.0 } else { 3.0 };
     Scheme {
@@ -93,7 +93,7 @@ pub(super) fn state(mesh: &Mesh, scheme: &Scheme, u: impl Fn([f64; 2], usize) ->
     State::pack(&scheme.operators.blocks, n, 6, &cells)
 }
 
-fn unpacked(scheme: &Scheme, state: &State) -> Vec<f64> {
+pub(super) fn unpacked(scheme: &Scheme, state: &State) -> Vec<f64> {
     state.unpack(&scheme.operators.blocks, scheme.operators.nodes())
 }
 
@@ -113,7 +113,7 @@ pub(super) fn midpoints(mesh: &Mesh, degree: usize) -> Cloud {
     seed::seed(seed::Layout::Jitter { seed: 1, amount: 0.2 }, degree + 1, mesh.cells.len())
 }
 
-fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
@@ -296,26 +296,34 @@ pub(super) fn noise(n: usize) -> f64 {
 
 #[test]
 fn noise_on_compressed_states_decays_with_lcf_for_all_methods() {
+    for degree in 1..=3 {
+        for kind in KINDS {
+            noise_decays(kind, degree, None);
+        }
+    }
+}
+
+/// From a cell of noise, 600 steps at .9 of the limit on 6 x 6 cells, at two compressed states.
+pub(super) fn noise_decays(kind: Kind, degree: usize, method: Option<Method>) {
     let mesh = rectangle([1.0, 1.0], [6, 6]).unwrap();
     for (f11, f22) in [(0.965, 1.0), (0.9, 0.9)] {
-        for degree in 1..=3 {
-            for kind in KINDS {
-                let scheme = scheme(&mesh, kind, degree, &midpoints(&mesh, degree), wall);
-                let mean = [f11, 0.0, 0.0, f22, 0.0, 0.0];
-                let noisy = |_: [f64; 2], a: usize| std::array::from_fn(|k| mean[k] + 1e-8 * noise(6 * a + k));
-                let mut state = state(&mesh, &scheme, noisy);
-                let n = scheme.operators.nodes();
-                let size = |state: &State| {
-                    let values = unpacked(&scheme, state);
-                    values.iter().enumerate().map(|(i, u)| (u - mean[(i / n) % 6]).abs()).fold(0.0, f64::max)
-                };
-                march(&scheme, &mut state, 1, 0.9 * cfl::limit(&scheme.method, degree));
-                let first = size(&state);
-                march(&scheme, &mut state, 600, 0.9 * cfl::limit(&scheme.method, degree));
-                // The design's criterion: not above the first step. (Without LCF it grows by e^10 and more.)
-                assert!(size(&state) <= first, "{kind:?} S{degree} ({f11}, {f22}): {:e} {first:e}", size(&state));
-            }
+        let mut scheme = scheme(&mesh, kind, degree, &midpoints(&mesh, degree), wall);
+        if let Some(method) = &method {
+            scheme.method = method.clone();
         }
+        let mean = [f11, 0.0, 0.0, f22, 0.0, 0.0];
+        let noisy = |_: [f64; 2], a: usize| std::array::from_fn(|k| mean[k] + 1e-8 * noise(6 * a + k));
+        let mut state = state(&mesh, &scheme, noisy);
+        let n = scheme.operators.nodes();
+        let size = |state: &State| {
+            let values = unpacked(&scheme, state);
+            values.iter().enumerate().map(|(i, u)| (u - mean[(i / n) % 6]).abs()).fold(0.0, f64::max)
+        };
+        march(&scheme, &mut state, 1, 0.9 * cfl::limit(&scheme.method, degree));
+        let first = size(&state);
+        march(&scheme, &mut state, 600, 0.9 * cfl::limit(&scheme.method, degree));
+        // The design's criterion: not above the first step. (Without LCF it grows by e^10 and more.)
+        assert!(size(&state) <= first, "{kind:?} S{degree} ({f11}, {f22}): {:e} {first:e}", size(&state));
     }
 }
 

@@ -13,7 +13,7 @@ use dgmpm::riemann::Flux;
 use dgmpm::run::{Report, Run, Settings};
 use dgmpm::source::Source;
 use dgmpm::state::State;
-use dgmpm::step::{Method, Scheme, Tableau, cfl};
+use dgmpm::step::{Method, Scheme, Sweeps, Tableau, cfl};
 use std::sync::atomic::AtomicBool;
 
 /// A method, with the layout of its points.
@@ -23,6 +23,8 @@ pub enum Kind {
     Fem,
     /// DGMPM on a layout with so many points per direction more than N + 1.
     Mpm(seed::Layout, usize),
+    /// DGMPM on midpoints, with the paper's sweeps instead of the ladder.
+    PaperSweeps,
 }
 
 pub const MIDPOINTS: Kind = Kind::Mpm(seed::Layout::Midpoints, 0);
@@ -31,14 +33,15 @@ pub const GAUSS: Kind = Kind::Mpm(seed::Layout::Gauss, 0);
 pub const JITTER: Kind = Kind::Mpm(seed::Layout::Jitter { seed: 1, amount: 0.2 }, 0);
 pub const MORE: Kind = Kind::Mpm(seed::Layout::Midpoints, 1);
 
-/// All methods, and all layouts of the points.
-pub const KINDS: [Kind; 7] = [MIDPOINTS, PAPER, GAUSS, JITTER, MORE, Kind::Fem, Kind::Rk];
+/// All methods, all layouts of the points, and both schedules of the sweeps.
+pub const KINDS: [Kind; 8] = [MIDPOINTS, PAPER, GAUSS, JITTER, MORE, Kind::PaperSweeps, Kind::Fem, Kind::Rk];
 
 impl std::fmt::Display for Kind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let name = match *self {
             Kind::Rk => "rk-dgfem",
             Kind::Fem => "ader-dgfem",
+            Kind::PaperSweeps => "paper's sweeps",
             MIDPOINTS => "dgmpm midpoints",
             PAPER => "dgmpm paper",
             GAUSS => "dgmpm gauss",
@@ -53,19 +56,24 @@ impl std::fmt::Display for Kind {
 pub fn scheme(problem: &Problem, mesh: &Mesh, kind: Kind, degree: usize, time_degree: usize) -> Scheme {
     let cloud = match kind {
         Kind::Mpm(layout, more) => seed::seed(layout, degree + 1 + more, mesh.cells.len()),
+        Kind::PaperSweeps => seed::seed(seed::Layout::Midpoints, degree + 1, mesh.cells.len()),
         _ => Cloud::default(),
     };
     let sampling = match kind {
         Kind::Rk => None,
         Kind::Fem => Some(Sampling::Nodes),
-        Kind::Mpm(..) => Some(Sampling::Cloud(&cloud)),
+        Kind::Mpm(..) | Kind::PaperSweeps => Some(Sampling::Cloud(&cloud)),
     };
     let links = periodic_links(mesh, &problem.periodic).unwrap();
     let needs = Needs { degree, sampling, curl_free: problem.alpha.is_some() };
     let operators = Operators::build(mesh, &links, &vec![0; mesh.cells.len()], &needs).unwrap();
     let method = match kind {
         Kind::Rk => Method::RungeKutta(Tableau::of_degree(time_degree)),
-        _ => Method::Ader { time: TimeBasis::new(time_degree), sweeps: degree.max(time_degree) + 1 },
+        Kind::PaperSweeps => {
+            let time = TimeBasis::new(time_degree);
+            Method::Ader { sweeps: Sweeps::paper(&time, degree.max(time_degree) + 1), time }
+        }
+        _ => Method::ader(degree, time_degree),
     };
     let force = problem.exact.body_force([0.0; 2], 0.0).is_some();
     let sources: Vec<Box<dyn Source>> = if force { vec![Box::new(ExactForce(problem.exact.clone()))] } else { vec![] };

@@ -1,0 +1,254 @@
+//! The local predictor (15)-(21): a space-time collocation at the points of each cell, blind to its neighbours.
+//!
+//! A sweep goes node by node in time: [`Predictor::sample`] forms u and from it Q = (P, v) at all points, once through
+//! the law; [`rates::Rates`] forms r = (Grad v, Div P) from Q. States at time nodes are never stored: they are sums of
+//! rates. So a block holds U^n, Q of one node, and the rates of two sweeps.
+
+mod rates;
+pub mod transfer;
+
+use super::{Method, Sweeps};
+use crate::lane::{Coefficient, F8, Kernel, Lanes, load_array, store_array};
+use crate::material::Material;
+use crate::operators::PointMatrices;
+use rates::Rates;
+use transfer::{ToNodes, ToPoints};
+
+/// Arrays of one block at its points; [point][field] each, those of time nodes with the node outermost.
+#[derive(Default)]
+pub struct Arrays {
+    /// U_p^n.
+    pub start: Vec<F8>,
+    /// U_p^n and what the sources add until a time node, [p][6]; empty without sources.
+    shifted: Vec<F8>,
+    /// r_k,p of the sweep before and of this one, [k][p][6].
+    rates: [Vec<F8>; 2],
+    /// Q of one time node as [`Rates`] wants it, [p][6].
+    q: Vec<F8>,
+    /// Sources b at points and time nodes, [k][p][2]; empty without sources.
+    pub source: Vec<F8>,
+    /// Time averages of F and v, [p][6].
+    pub mean: Vec<F8>,
+    /// Time averages of P, [p][4].
+    pub mean_stress: Vec<F8>,
+    /// Between the two factors of a transfer.
+    pub between: Vec<F8>,
+    /// Q at the nodes, [a][6].
+    fitted: Vec<F8>,
+}
+
+impl Arrays {
+    /// For at most `points` points a cell and m nodes a direction.
+    pub fn new(points: usize, m: usize, method: &Method, sources: bool) -> Self {
+        let Method::Ader { time, sweeps } = method else { return Self::default() };
+        let zeros = |fields: usize| vec![F8::ZERO; fields * points];
+        Self {
+            start: zeros(6),
+            shifted: if sources { zeros(6) } else { vec![] },
+            rates: [zeros(6 * sweeps.widest()), zeros(6 * sweeps.widest())],
+            q: zeros(6),
+            source: if sources { zeros(2 * time.len()) } else { vec![] },
+            mean: zeros(6),
+            mean_stress: zeros(4),
+            between: vec![F8::ZERO; transfer::factors(m, points, 6)],
+            fitted: vec![F8::ZERO; 6 * m * m],
+        }
+    }
+}
+
+/// What the predictor of a block needs beside its arrays.
+pub struct Predictor<'a, M, C> {
+    /// The law.
+    pub law: &'a M,
+    /// Matrices of its points.
+    pub matrices: &'a PointMatrices<C>,
+    /// dxi_b/dX_a, see [`crate::operators::Points::metric_of`].
+    pub metric: &'a [F8],
+    /// Weights of the time nodes.
+    pub weights: &'a [f64],
+    /// The schedule.
+    pub sweeps: &'a Sweeps,
+    /// Step, s.
+    pub dt: f64,
+    /// The instruction set.
+    pub kernel: Kernel,
+}
+
+/// dt times a row of a sweep's matrix; at most 7 time nodes.
+type Row = [f64; 8];
+
+impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
+    /// From `start` to the time averages `mean`, `mean_stress`.
+    #[inline(always)]
+    pub fn run<L: Lanes>(&self, arrays: &mut Arrays) {
+        let (np, times) = (self.matrices.points(), self.weights.len());
+        // One metric for all points turns P to the axes of the cell before it is differentiated: fewer products.
+        let constant = (self.metric.len() == 4).then(|| load_array::<L, 4>(self.metric));
+        for sweep in &self.sweeps.inner {
+            for s in 0..sweep.to {
+                self.shift::<L>(arrays, &sweep.sources[s * times..(s + 1) * times]);
+                let Arrays { start, shifted, rates: [before, _], q, .. } = arrays;
+                let base = if shifted.is_empty() { &start[..6 * np] } else { &shifted[..6 * np] };
+                let row = self.row(&sweep.rates[s * sweep.from..(s + 1) * sweep.from]);
+                match constant {
+                    Some(metric) => self.sample::<L>(base, before, &row[..sweep.from], Turned(metric), q),
+                    None => self.sample::<L>(base, before, &row[..sweep.from], Plain, q),
+                }
+                if self.matrices.is_overdetermined() {
+                    self.fit(arrays);
+                }
+                let Arrays { rates: [_, now], q, .. } = arrays;
+                let (q, out) = (&q[..6 * np], &mut now[6 * np * s..6 * np * (s + 1)]);
+                self.kernel.run(Rates { matrices: self.matrices, metric: self.metric, q, out });
+            }
+            let [before, now] = &mut arrays.rates;
+            std::mem::swap(before, now);
+        }
+        self.average::<L>(arrays);
+    }
+
+    /// Q <- G2P P2G Q.
+    #[inline(always)]
+    fn fit(&self, arrays: &mut Arrays) {
+        let Arrays { q, between, fitted, .. } = arrays;
+        let q = &mut q[..6 * self.matrices.points()];
+        self.kernel.run(ToNodes::<C, 6> { matrices: self.matrices, points: q, between, nodes: fitted });
+        self.kernel.run(ToPoints::<C, 6> { matrices: self.matrices, nodes: fitted, between, points: q });
+    }
+
+    /// dt times the entries of a row.
+    #[inline(always)]
+    fn row(&self, entries: &[f64]) -> Row {
+        let mut out = [0.0; 8];
+        for (out, entry) in out.iter_mut().zip(entries) {
+            *out = self.dt * entry;
+        }
+        out
+    }
+
+    /// U^n + dt rho0 sum_k B[k] b_k, where there are sources.
+    #[inline(always)]
+    fn shift<L: Lanes>(&self, arrays: &mut Arrays, row: &[f64]) {
+        if arrays.shifted.is_empty() {
+            return;
+        }
+        let np = self.matrices.points();
+        arrays.shifted[..6 * np].copy_from_slice(&arrays.start[..6 * np]);
+        for (k, entry) in row.iter().enumerate() {
+            let factor = L::splat(self.dt * self.law.density() * entry);
+            for p in 0..np {
+                for i in 0..2 {
+                    let (b, u) = (&arrays.source[2 * (k * np + p) + i], &mut arrays.shifted[6 * p + 4 + i]);
+                    factor.mul_add(L::load(b), L::load(u)).store(u);
+                }
+            }
+        }
+    }
+
+    /// u = U^n + dt sum_k W[k] r_k at one time node, and Q of it. F and the law first, then v: together they would need
+    /// more registers than there are.
+    #[inline(always)]
+    fn sample<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], turn: impl Turn<L>, q: &mut [F8]) {
+        let (base, before) = (base.as_chunks::<6>().0, before.as_chunks::<6>().0);
+        let q = &mut q.as_chunks_mut::<6>().0[..base.len()];
+        for (p, q) in q.iter_mut().enumerate() {
+            let f = state::<L, 0, 4>(base, before, row, p);
+            let stress = turn.apply(self.law.stress(f, &mut []));
+            stress[0].store(&mut q[0]);
+            stress[1].store(&mut q[1]);
+            stress[2].store(&mut q[4]);
+            stress[3].store(&mut q[5]);
+        }
+        let inverse_density = L::splat(1.0 / self.law.density());
+        for (p, q) in q.iter_mut().enumerate() {
+            let momentum = state::<L, 4, 2>(base, before, row, p);
+            (momentum[0] * inverse_density).store(&mut q[2]);
+            (momentum[1] * inverse_density).store(&mut q[3]);
+        }
+    }
+
+    /// Time averages of F, v and P = P(F) over the time nodes. That of u is linear in the rates.
+    #[inline(always)]
+    fn average<L: Lanes>(&self, arrays: &mut Arrays) {
+        let (np, sweeps, last) = (self.matrices.points(), self.sweeps, &self.sweeps.last);
+        let inverse_density = L::splat(1.0 / self.law.density());
+        self.shift::<L>(arrays, &sweeps.mean_sources);
+        let Arrays { start, shifted, rates: [before, _], mean, mean_stress, .. } = arrays;
+        let base = if shifted.is_empty() { &*start } else { &*shifted };
+        let (start, base, before) = (start.as_chunks::<6>().0, base.as_chunks::<6>().0, before.as_chunks::<6>().0);
+        let (start, base) = (&start[..np], &base[..np]);
+        let mean_row = self.row(&sweeps.mean_rates);
+        for (p, mean) in mean.as_chunks_mut::<6>().0[..np].iter_mut().enumerate() {
+            let u = state::<L, 0, 6>(base, before, &mean_row[..last.from], p);
+            store_array([u[0], u[1], u[2], u[3], u[4] * inverse_density, u[5] * inverse_density], mean);
+        }
+        let mut rows = [Row::default(); 8];
+        for (s, row) in rows.iter_mut().enumerate().take(last.to) {
+            *row = self.row(&last.rates[s * last.from..(s + 1) * last.from]);
+        }
+        for (p, mean_stress) in mean_stress.as_chunks_mut::<4>().0[..np].iter_mut().enumerate() {
+            let mut sum = [L::zero(); 4];
+            for (row, weight) in rows.iter().zip(self.weights) {
+                // Sources do not act on F: from U^n itself.
+                let f = state::<L, 0, 4>(start, before, &row[..last.from], p);
+                let (weight, stress) = (L::splat(*weight), self.law.stress(f, &mut []));
+                for i in 0..4 {
+                    sum[i] = weight.mul_add(stress[i], sum[i]);
+                }
+            }
+            store_array(sum, mean_stress);
+        }
+    }
+}
+
+/// Fields FIRST to FIRST + K of base + sum_k row[k] r_k at point p.
+#[inline(always)]
+fn state<L: Lanes, const FIRST: usize, const K: usize>(
+    base: &[[F8; 6]],
+    before: &[[F8; 6]],
+    row: &[f64],
+    p: usize,
+) -> [L; K] {
+    let mut u = load_array::<L, K>(&base[p][FIRST..]);
+    for (k, factor) in row.iter().enumerate() {
+        let (factor, rate) = (L::splat(*factor), &before[k * base.len() + p]);
+        for i in 0..K {
+            u[i] = factor.mul_add(L::load(&rate[FIRST + i]), u[i]);
+        }
+    }
+    u
+}
+
+/// From P to what is differentiated along xi1 (first two) and xi2.
+trait Turn<L>: Copy {
+    /// [along xi1 of row 1, of row 2, along xi2 of row 1, of row 2].
+    fn apply(self, stress: [L; 4]) -> [L; 4];
+}
+
+/// dxi_b/dX_a P_ia, with the same metric [b][a] at all points.
+#[derive(Clone, Copy)]
+struct Turned<L>([L; 4]);
+
+impl<L: Lanes> Turn<L> for Turned<L> {
+    #[inline(always)]
+    fn apply(self, p: [L; 4]) -> [L; 4] {
+        let m = self.0;
+        [
+            m[0].mul_add(p[0], m[1] * p[1]),
+            m[0].mul_add(p[2], m[1] * p[3]),
+            m[2].mul_add(p[0], m[3] * p[1]),
+            m[2].mul_add(p[2], m[3] * p[3]),
+        ]
+    }
+}
+
+/// P_i1, P_i2.
+#[derive(Clone, Copy)]
+struct Plain;
+
+impl<L: Lanes> Turn<L> for Plain {
+    #[inline(always)]
+    fn apply(self, p: [L; 4]) -> [L; 4] {
+        [p[0], p[2], p[1], p[3]]
+    }
+}
