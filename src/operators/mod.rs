@@ -8,7 +8,7 @@ pub mod matrix;
 pub mod points;
 pub mod stored;
 
-pub use blocks::{Blocks, Neighbour};
+pub use blocks::{Blocks, Neighbour, Side};
 pub use certificate::Certificate;
 pub use curl_free::CurlFree;
 pub use geometry::Geometry;
