@@ -136,14 +136,6 @@ impl Blocks {
         Plan { side: Side::Gathered(self.gathered.len() - 1), special }
     }
 
-    /// The other sides lane by lane, whatever the plan; lanes at a boundary see themselves.
-    pub fn across(&self, block: usize, face: usize) -> [Across; LANES] {
-        std::array::from_fn(|lane| match self.neighbours[block][face][lane] {
-            Neighbour::Cell(across) | Neighbour::Interface(across, _) => across,
-            Neighbour::Boundary(_) | Neighbour::Padding => Across { face: 4 * block + face, lane, flip: false },
-        })
-    }
-
     /// Number of blocks.
     pub fn len(&self) -> usize {
         self.cells.len()

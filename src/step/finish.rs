@@ -140,9 +140,9 @@ impl Block<'_> {
         }
     }
 
-    /// How to read a face. With the balance, lanes at a boundary must see themselves: then they are gathered.
+    /// How to read a face.
     #[inline(always)]
-    fn face<const W: usize>(&self, face: usize, metered: bool) -> Face<'_, W> {
+    fn face<const W: usize>(&self, face: usize) -> Face<'_, W> {
         let (blocks, m) = (&self.scheme.operators.blocks, self.scheme.operators.line.m);
         let traces = self.traces.as_chunks::<W>().0;
         let plan = blocks.plan[self.block][face];
@@ -150,11 +150,10 @@ impl Block<'_> {
         let mut out =
             Face { own: &traces[at..at + m], aligned: None, at: [0; LANES], step: [0; LANES], special: plan.special };
         let across = match plan.side {
-            Side::Aligned(there) if !(plan.special && metered) => {
+            Side::Aligned(there) => {
                 out.aligned = Some(&traces[there * m..there * m + m]);
                 return out;
             }
-            Side::Aligned(_) => blocks.across(self.block, face),
             Side::Gathered(entry) => blocks.gathered[entry],
         };
         let stride = (W * LANES) as isize;
@@ -182,7 +181,7 @@ impl Block<'_> {
             let normal = load_array::<L, 2>(&metric.normal[2 * face..2 * face + 2]);
             let length = L::load(&metric.length[face]);
             let out = &mut lift[face * 6 * m..(face + 1) * 6 * m];
-            let Face { own: numbers, aligned, mut at, step, special } = self.face::<W>(face, metered);
+            let Face { own: numbers, aligned, mut at, step, special } = self.face::<W>(face);
             for (point, &weight) in operators.line.basis.weights[..m].iter().enumerate() {
                 let own = load_array::<L, W>(&numbers[point]);
                 let other = match aligned {
@@ -195,11 +194,14 @@ impl Block<'_> {
                         numbers
                     }
                 };
-                let other = turned(other);
+                let mut other = turned(other);
                 let minus = trace_of::<L, R, W>(&own);
                 let mut flux = riemann.flux(&minus, &trace_of::<L, R, W>(&other), normal, density);
                 let scale = length * L::splat(weight);
                 if special {
+                    if metered {
+                        other = self.without_jumps::<L, W>(face, own, other);
+                    }
                     flux = self.patched::<L, R, W>(face, point, other, flux);
                 }
                 if W >= width(false, true) {
@@ -215,6 +217,20 @@ impl Block<'_> {
             }
         }
         (self.scratch.nodes.lift, self.sums) = (lift, sums);
+    }
+
+    /// The other side's numbers, with the own ones in lanes at a boundary: these have no jumps for the balance.
+    #[inline(always)]
+    fn without_jumps<L: Lanes, const W: usize>(&self, face: usize, own: [L; W], other: [L; W]) -> [L; W] {
+        let (mut here, mut there) = ([F8::ZERO; W], [F8::ZERO; W]);
+        store_array(own, &mut here);
+        store_array(other, &mut there);
+        for (lane, neighbour) in self.scheme.operators.blocks.neighbours[self.block][face].iter().enumerate() {
+            if matches!(neighbour, Neighbour::Boundary(_)) {
+                (0..W).for_each(|k| there[k].0[lane] = here[k].0[lane]);
+            }
+        }
+        load_array::<L, W>(&there)
     }
 
     /// The own numbers of a face point.
