@@ -89,6 +89,8 @@ pub trait Lanes: Lane {
     fn load(from: &F8) -> Self;
     /// Writes 8 lanes.
     fn store(self, to: &mut F8);
+    /// From one number for each lane.
+    fn from_lanes(numbers: [f64; LANES]) -> Self;
 }
 
 /// K numbers that lie behind each other. (`array::from_fn` and `array::map` take closures, which are not inlined.)
@@ -99,6 +101,39 @@ pub fn load_array<L: Lanes, const K: usize>(from: &[F8]) -> [L; K] {
         *out = L::load(from);
     }
     out
+}
+
+/// K numbers of each lane from a place of its own: the first of lane l is number `at[l]` of [`as_f64`], the others follow
+/// as in a store of [`F8`].
+#[inline(always)]
+pub fn gather_array<L: Lanes, const K: usize>(from: &[F8], at: &[usize; LANES]) -> [L; K] {
+    let numbers = as_f64(from);
+    for first in at {
+        assert!(first + (K - 1) * LANES < numbers.len(), "a lane beyond the end");
+    }
+    let mut out = [L::zero(); K];
+    for (k, out) in out.iter_mut().enumerate() {
+        let mut lanes = [0.0; LANES];
+        for lane in 0..LANES {
+            // SAFETY: k <= K - 1, and the last number of each lane was seen to be there.
+            lanes[lane] = unsafe { *numbers.get_unchecked(at[lane] + k * LANES) };
+        }
+        *out = L::from_lanes(lanes);
+    }
+    out
+}
+
+/// A clock for the shortest of phases, in units of its own (the processor's time stamp; nanoseconds where there is none).
+#[inline(always)]
+pub fn ticks() -> u64 {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: reads a register; every x86_64 processor has it.
+    return unsafe { std::arch::x86_64::_rdtsc() };
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
+        START.get_or_init(std::time::Instant::now).elapsed().as_nanos() as u64
+    }
 }
 
 /// Writes K numbers behind each other.
@@ -226,6 +261,10 @@ impl Lanes for Portable {
     fn store(self, to: &mut F8) {
         to.0 = self.0;
     }
+    #[inline(always)]
+    fn from_lanes(numbers: [f64; LANES]) -> Portable {
+        Portable(numbers)
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -233,7 +272,7 @@ pub use x86::Avx2;
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    use super::{CUBE_ROOT_MAGIC, F8, Lane, Lanes, Work};
+    use super::{CUBE_ROOT_MAGIC, F8, LANES, Lane, Lanes, Work};
     use std::arch::x86_64::*;
     use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -329,6 +368,11 @@ mod x86 {
                 _mm256_store_pd(to.0.as_mut_ptr(), self.0);
                 _mm256_store_pd(to.0.as_mut_ptr().add(4), self.1);
             }
+        }
+        #[inline(always)]
+        fn from_lanes(n: [f64; LANES]) -> Avx2 {
+            // SAFETY: see Avx2.
+            unsafe { Avx2(_mm256_setr_pd(n[0], n[1], n[2], n[3]), _mm256_setr_pd(n[4], n[5], n[6], n[7])) }
         }
     }
 

@@ -34,6 +34,12 @@ pub fn times_transposed<L: Lane>(a: [L; 4], b: [L; 4]) -> [L; 4] {
     [dot(rows[0], columns[0]), dot(rows[0], columns[1]), dot(rows[1], columns[0]), dot(rows[1], columns[1])]
 }
 
+/// C = F^T F, [C11, C12, C22].
+#[inline(always)]
+pub fn right_cauchy_green<L: Lane>(f: [L; 4]) -> [L; 3] {
+    [dot([f[0], f[2]], [f[0], f[2]]), dot([f[0], f[2]], [f[1], f[3]]), dot([f[1], f[3]], [f[1], f[3]])]
+}
+
 /// v / |v|
 #[inline(always)]
 pub fn normalised<L: Lane>(v: [L; 2]) -> [L; 2] {

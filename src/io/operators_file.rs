@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 use crate::operators::stored::Flat;
 use crate::operators::{Blocks, Needs, Sampling, Stored};
 
-/// The format of the stored matrices.
+/// The format of the stored matrices. Version 2: cells of a block lie far apart, see [`Blocks`].
 pub const FORMAT: Format =
     Format { name: "dgmpm operators", version: 2, remedy: "write it again by `dgmpm preprocess`" };
 

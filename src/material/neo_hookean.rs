@@ -17,6 +17,8 @@ pub struct NeoHookean {
 /// J and what the stress is made of: P = a F + b cof F.
 struct Terms<L> {
     j: L,
+    /// 1/J = (J^(-1/3))^3: saves a division.
+    inverse: L,
     invariant: L,
     a: L,
     b: L,
@@ -37,9 +39,17 @@ impl NeoHookean {
         let invariant = squares + L::splat(1.0);
         let a = root2 * L::splat(self.mu);
         // 1/J = (J^(-1/3))^3 saves the division; what does not wait for the root stands in one factor.
-        let third = (invariant * L::splat(-self.mu / 3.0) * root2) * (root2 * root);
+        let inverse = root2 * root;
+        let third = (invariant * L::splat(-self.mu / 3.0) * root2) * inverse;
         let b = (j - L::splat(1.0)).mul_add(L::splat(self.kappa), third);
-        Terms { j, invariant, a, b }
+        Terms { j, inverse, invariant, a, b }
+    }
+
+    /// kappa + 5 A I / (9 J^2), what g g^T counts in the acoustic tensor.
+    #[inline(always)]
+    fn square<L: Lane>(&self, terms: &Terms<L>) -> L {
+        let Terms { inverse, invariant, a, .. } = *terms;
+        (a * invariant * inverse * inverse).mul_add(L::splat(5.0 / 9.0), L::splat(self.kappa))
     }
 }
 
@@ -75,16 +85,28 @@ impl Material for NeoHookean {
     /// B = A 1 - (2A/3J)(f g^T + g f^T) + (kappa + 5 A I/(9 J^2)) g g^T, f = F N, g = (cof F) N.
     #[inline(always)]
     fn acoustic<L: Lane>(&self, f: [L; 4], n: [L; 2]) -> [L; 3] {
-        let Terms { j, invariant, a, .. } = self.terms(f);
+        let terms = self.terms(f);
+        let Terms { inverse, a, .. } = terms;
         let (u, g) = (tensor::times(f, n), tensor::times(tensor::cofactor(f), n));
-        let inverse = L::splat(1.0) / j;
         let cross = a * inverse * L::splat(-2.0 / 3.0);
-        let square = (a * invariant * inverse * inverse).mul_add(L::splat(5.0 / 9.0), L::splat(self.kappa));
+        let square = self.square(&terms);
         // cross (f g^T + g f^T) + square g g^T = h g^T + g h^T with h = cross f + square/2 g.
         let half = L::splat(0.5) * square;
         let h = [cross.mul_add(u[0], half * g[0]), cross.mul_add(u[1], half * g[1])];
         let two = L::splat(2.0);
         [(two * h[0]).mul_add(g[0], a), h[0].mul_add(g[1], h[1] * g[0]), (two * h[1]).mul_add(g[1], a)]
+    }
+
+    /// Along a principal direction of stretch l1, the other being l2, f and g are parallel, f.g = J and g.g = l2^2: B has
+    /// the eigenvalues (kappa + 5 A I/(9 J^2)) l2^2 - A/3 and A. The fastest is that of the larger l2.
+    #[inline(always)]
+    fn largest_squares<L: Lane>(&self, f: [L; 4]) -> [L; 2] {
+        let terms = self.terms(f);
+        let [c11, c12, c22] = tensor::right_cauchy_green(f);
+        let stretch2 = tensor::eigenvalues(c11, c12, c22)[0];
+        let along = self.square(&terms).mul_add(stretch2, L::splat(-1.0 / 3.0) * terms.a);
+        let inverse = L::splat(1.0 / self.density);
+        [along.max(terms.a) * inverse, along.min(terms.a) * inverse]
     }
 }
 

@@ -9,7 +9,7 @@ pub mod point_matrices;
 pub mod points;
 pub mod stored;
 
-pub use blocks::{Blocks, Neighbour};
+pub use blocks::{Blocks, Neighbour, Side};
 pub use certificate::Certificate;
 pub use curl_free::CurlFree;
 pub use geometry::Geometry;

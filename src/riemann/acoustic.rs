@@ -13,6 +13,8 @@ pub struct Acoustic;
 pub struct AcousticCurl;
 
 impl Riemann for Acoustic {
+    const SHEAR: bool = true;
+
     #[inline(always)]
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6] {
         let half = L::splat(0.5);
@@ -27,6 +29,8 @@ impl Riemann for Acoustic {
 }
 
 impl Riemann for AcousticCurl {
+    const SHEAR: bool = true;
+
     #[inline(always)]
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6] {
         let mut flux = Acoustic.flux(minus, plus, n, density);

@@ -26,11 +26,11 @@ pub struct Trace<L> {
     pub c: [L; 2],
 }
 
-/// Numbers in a [`Trace`], in the order f, v, t, c.
-pub const TRACE: usize = 10;
-
 /// An interface flux. The normal N is the unit outward normal of '-' in the initial configuration.
 pub trait Riemann {
+    /// Whether it looks at c_s. Where it does not, traces do not hold it, and it is given as 0.
+    const SHEAR: bool;
+
     /// Flux*.N in the order of U: [F11, F12, F21, F22, p1, p2]; `density` is rho0 of both sides.
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6];
 }
@@ -44,6 +44,16 @@ names! {
         Acoustic = "acoustic",
         /// Acoustic with a penalty on the tangential jump of F.
         AcousticCurl = "acoustic-curl",
+    }
+}
+
+impl Flux {
+    /// Whether it looks at c_s.
+    pub fn has_shear(self) -> bool {
+        fn shear<R: Riemann>(_: &R) -> bool {
+            R::SHEAR
+        }
+        crate::with_flux!(self, riemann => shear(riemann))
     }
 }
 

@@ -8,6 +8,8 @@ use crate::lane::Lane;
 pub struct Rusanov;
 
 impl Riemann for Rusanov {
+    const SHEAR: bool = false;
+
     #[inline(always)]
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6] {
         let half = L::splat(0.5);

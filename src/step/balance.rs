@@ -26,11 +26,8 @@
 use super::{Scheme, Work};
 use crate::lane::{F8, Lanes, load_array};
 use crate::material::Material;
-use crate::riemann::{TRACE, tangent};
+use crate::riemann::tangent;
 use crate::tensor::{dot, times};
-
-/// Numbers of a trace where the balance is on: those of a [`Trace`](crate::riemann::Trace), then s = P T.
-pub(super) const METERED: usize = TRACE + 2;
 
 /// The balance of energy since the start of a run, in J per metre of thickness.
 ///
@@ -91,7 +88,7 @@ pub(super) struct Sums {
 
 /// What a face point adds, seen from '-'.
 pub(super) struct FacePower<'a> {
-    /// The trace of '-', [`METERED`] numbers.
+    /// The trace of '-', with s = P T as its last two numbers.
     pub minus: &'a [F8],
     /// That of '+', with the normal of '-'; where there is no cell, again '-'.
     pub plus: &'a [F8],
@@ -102,8 +99,8 @@ pub(super) struct FacePower<'a> {
 impl FacePower<'_> {
     /// Adds half of D with `weight` dt b_i w len; lanes at a boundary have no jumps, and add nothing.
     #[inline(always)]
-    pub fn jumps<L: Lanes>(&self, weight: &F8, normal: [L; 2], dissipation: &mut F8) {
-        let (m, p) = (load_array::<L, METERED>(self.minus), load_array::<L, METERED>(self.plus));
+    pub fn jumps<L: Lanes, const W: usize>(&self, weight: &F8, normal: [L; 2], dissipation: &mut F8) {
+        let (m, p) = (load_array::<L, W>(self.minus), load_array::<L, W>(self.plus));
         let x = load_array::<L, 6>(self.flux);
         let g = [x[0], x[1], x[2], x[3]];
         let (v, a) = (times(g, normal), times(g, tangent(normal)));
@@ -114,7 +111,7 @@ impl FacePower<'_> {
             let star_t = -x[4 + i] - half * (m[6 + i] + p[6 + i]);
             power = star_v.mul_add(p[6 + i] - m[6 + i], power);
             power = star_t.mul_add(p[4 + i] - m[4 + i], power);
-            power = power - a[i] * (p[10 + i] - m[10 + i]);
+            power = power - a[i] * (p[W - 2 + i] - m[W - 2 + i]);
         }
         add(half * L::load(weight), power, dissipation);
     }
@@ -124,7 +121,7 @@ impl FacePower<'_> {
         let of = |numbers: &[F8], k: usize| [numbers[k].0[lane], numbers[k + 1].0[lane]];
         let ([g11, g12], [g21, g22]) = (of(self.flux, 0), of(self.flux, 2));
         let g = [g11, g12, g21, g22];
-        let (v, t, s) = (of(self.minus, 4), of(self.minus, 6), of(self.minus, TRACE));
+        let (v, t, s) = (of(self.minus, 4), of(self.minus, 6), of(self.minus, self.minus.len() - 2));
         let star_v = times(g, normal).map(|x| -x);
         let star_t = of(self.flux, 4).map(|x| -x);
         let jump = [0, 1].map(|i| (star_v[i] - v[i]) * (star_t[i] - t[i]));
@@ -168,9 +165,8 @@ pub(super) fn strain_energy<L: Lanes, M: Material>(law: &M, mass: &[F8], u: &[F8
 impl Work {
     /// With the memory that the balance of energy needs; the steps then meter it.
     pub fn with_balance(mut self, scheme: &Scheme) -> Self {
-        let (blocks, m) = (scheme.operators.blocks.len(), scheme.operators.line.m);
-        self.traces = vec![F8::ZERO; blocks * 4 * m * METERED];
-        self.balance = Some(vec![Sums::default(); blocks]);
+        self.traces = scheme.room_for_traces(true);
+        self.balance = Some(vec![Sums::default(); scheme.operators.blocks.len()]);
         self
     }
 

@@ -1,19 +1,19 @@
 //! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
 
-use super::balance::{self, METERED, Sums};
+use super::balance::{self, Sums};
 use super::dense::{add_scaled, gather, interleave};
+use super::phase::Clock;
 use super::predictor::Predictor;
 use super::predictor::transfer::{ToNodes, ToPoints};
-use super::volume::{self, Metric};
+use super::sums::Terms;
+use super::volume::{self, Metric, with_nodes};
 use super::{Method, Phase, Scheme, Scratch, Stage};
 use crate::lane::{Coefficient, F8, LANES, Lanes, Work, store_array};
 use crate::material::Material;
 use crate::mesh::map;
 use crate::operators::{PointMatrices, Points, Share};
-use crate::riemann::TRACE;
 use crate::state::{State, UNKNOWNS};
 use crate::with_law;
-use std::time::Instant;
 
 /// The work on one block.
 pub(super) struct Block<'a> {
@@ -37,7 +37,7 @@ pub(super) struct Block<'a> {
     pub scratch: &'a mut Scratch,
 }
 
-impl Work for Block<'_> {
+impl Work for &mut Block<'_> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
@@ -45,70 +45,104 @@ impl Work for Block<'_> {
     }
 }
 
-impl Block<'_> {
+/// rho0 b at the nodes, and the displacement: what not every run has.
+struct Extras<'a, 'b>(&'a mut Block<'b>);
+
+impl Work for Extras<'_, '_> {
+    type Out = ();
     #[inline(always)]
-    fn with<L: Lanes, M: Material>(mut self, law: &M) {
-        let mut clock = Instant::now();
+    fn run<L: Lanes>(self) {
+        let Self(block) = self;
+        let operators = &block.scheme.operators;
+        let (n, density) = (operators.nodes(), block.scheme.laws[operators.blocks.material[block.block]].density());
+        let nodes = &block.scratch.nodes;
+        if !block.scheme.sources.is_empty() {
+            add_scaled::<L>(density, &nodes.source, &mut block.rate[4 * n..6 * n]);
+            if let Some(sums) = block.sums.as_mut() {
+                let mass = Metric::of(&operators.geometry, block.block, n).mass;
+                let power = balance::source_power::<L>(density, mass, &nodes.mean, &nodes.source);
+                let dt = L::splat(block.stage.dt * block.scheme.weight(block.stage.number));
+                balance::add(dt, power, &mut sums.source_work);
+            }
+        }
+        if block.state.has_displacement() {
+            for (a, mean) in nodes.mean.as_chunks::<6>().0.iter().enumerate() {
+                block.rate[UNKNOWNS * n + a] = mean[4];
+                block.rate[(UNKNOWNS + 1) * n + a] = mean[5];
+            }
+        }
+    }
+}
+
+impl Block<'_> {
+    /// All of it.
+    pub fn run(mut self) {
+        let (kernel, operators) = (self.scheme.kernel, &self.scheme.operators);
+        let (line, n) = (&operators.line, operators.nodes());
+        let metric = Metric::of(&operators.geometry, self.block, n);
+        kernel.run(&mut self);
+        let mut clock = Clock::now();
+        with_nodes!(line.m, M => kernel.run(volume::Volume::<'_, M> {
+            line,
+            metric,
+            arrays: &mut self.scratch.nodes,
+            rate: self.rate,
+        }));
+        if let (0, Some(sums)) = (self.stage.number, self.sums.as_mut()) {
+            **sums = Sums::default();
+        }
+        if !self.scheme.sources.is_empty() {
+            self.source_at_nodes();
+        }
+        if !self.scheme.sources.is_empty() || self.state.has_displacement() {
+            kernel.run(Extras(&mut self));
+        }
+        self.scratch.phases.book(Phase::Volume, &mut clock);
+        let (shear, metered) = (self.scheme.flux.has_shear(), self.sums.is_some());
+        let width = volume::width(shear, metered);
+        with_nodes!(line.m, M => kernel.run(volume::Traces::<'_, M> {
+            line,
+            metric,
+            arrays: &self.scratch.nodes,
+            width,
+            metered,
+            traces: self.traces,
+        }));
+        let law = &self.scheme.laws[operators.blocks.material[self.block]];
+        kernel.run(volume::Speeds { law, normal: metric.normal, width, shear, traces: self.traces });
+        self.scratch.phases.book(Phase::Traces, &mut clock);
+    }
+
+    #[inline(always)]
+    fn with<L: Lanes, M: Material>(&mut self, law: &M) {
+        let mut clock = Clock::now();
         match &self.scheme.operators.points {
-            None => self.stage::<L, M>(law),
+            None => self.stage::<L, M>(law, &mut clock),
             Some(points) => match points.pool.share[self.block] {
                 Share::Shared(k) => self.predict::<L, M, _>(law, points, &points.pool.shared[k], &mut clock),
                 Share::Own(k) => self.predict::<L, M, _>(law, points, &points.pool.own[k], &mut clock),
             },
         }
-        let operators = &self.scheme.operators;
-        let (line, n) = (&operators.line, operators.nodes());
-        let metric = Metric::of(&operators.geometry, self.block, n);
-        volume::volume::<L>(line, metric, &mut self.scratch.nodes, self.rate);
-        if !self.scheme.sources.is_empty() {
-            self.source_at_nodes();
-            add_scaled::<L>(law.density(), &self.scratch.nodes.source, &mut self.rate[4 * n..6 * n]);
-        }
-        if self.state.has_displacement() {
-            for (a, mean) in self.scratch.nodes.mean.as_chunks::<6>().0.iter().enumerate() {
-                self.rate[UNKNOWNS * n + a] = mean[4];
-                self.rate[(UNKNOWNS + 1) * n + a] = mean[5];
-            }
-        }
-        self.scratch.phases.book(Phase::Volume, &mut clock);
-        let nodes = &self.scratch.nodes;
-        match self.sums.as_mut() {
-            None => volume::traces::<L, M, TRACE>(law, line, metric, nodes, self.traces),
-            Some(sums) => {
-                volume::traces::<L, M, METERED>(law, line, metric, nodes, self.traces);
-                if self.stage.number == 0 {
-                    **sums = Sums::default();
-                }
-                if !self.scheme.sources.is_empty() {
-                    let power = balance::source_power::<L>(law.density(), metric.mass, &nodes.mean, &nodes.source);
-                    let dt = L::splat(self.stage.dt * self.scheme.weight(self.stage.number));
-                    balance::add(dt, power, &mut sums.source_work);
-                }
-            }
-        }
-        self.scratch.phases.book(Phase::Traces, &mut clock);
     }
 
     /// Runge-Kutta: U = U^n + dt sum_j a_ij k_j, and the law at the nodes.
     #[inline(always)]
-    fn stage<L: Lanes, M: Material>(&mut self, law: &M) {
-        let (n, stride) = (self.scheme.operators.nodes(), self.rate.len());
-        let begin = stride * self.block;
-        self.scratch.nodes.stage.copy_from_slice(&self.state.u[begin..begin + stride]);
-        if let Method::RungeKutta(tableau) = &self.scheme.method {
-            for (k, rate) in self.before.iter().enumerate().filter(|(k, _)| tableau.a[self.stage.number][*k] != 0.0) {
-                let factor = self.stage.dt * tableau.a[self.stage.number][k];
-                add_scaled::<L>(factor, &rate[begin..begin + stride], &mut self.scratch.nodes.stage);
-            }
-        }
+    fn stage<L: Lanes, M: Material>(&mut self, law: &M, clock: &mut Clock) {
+        let (n, begin) = (self.scheme.operators.nodes(), self.rate.len() * self.block);
+        let Method::RungeKutta(tableau) = &self.scheme.method else { return };
+        let nodes = &mut self.scratch.nodes;
+        // The displacement moves nothing: only the six of U are needed.
+        let (start, stage) = (&self.state.u[begin..begin + UNKNOWNS * n], &mut nodes.stage[..UNKNOWNS * n]);
+        let factors = tableau.a[self.stage.number].iter().map(|a| a * self.stage.dt);
+        Terms::new(factors, self.before, begin, UNKNOWNS * n).add_to::<L>(start, stage);
         let inverse_density = L::splat(1.0 / law.density());
-        for a in 0..n {
-            let [f11, f12, f21, f22, p1, p2] = gather::<L, 6>(&self.scratch.nodes.stage, n, a);
-            let s = law.stress([f11, f12, f21, f22], &mut []);
-            let v = [p1 * inverse_density, p2 * inverse_density];
-            store_array([f11, f12, f21, f22, v[0], v[1]], &mut self.scratch.nodes.mean[6 * a..6 * a + 6]);
-            store_array(s, &mut self.scratch.nodes.mean_stress[4 * a..4 * a + 4]);
+        let (mean, stress) = (nodes.mean.as_chunks_mut::<6>().0, nodes.mean_stress.as_chunks_mut::<4>().0);
+        for (a, (mean, stress)) in mean.iter_mut().zip(stress).enumerate().take(n) {
+            let [f11, f12, f21, f22, p1, p2] = gather::<L, 6>(stage, n, a);
+            store_array([f11, f12, f21, f22, p1 * inverse_density, p2 * inverse_density], mean);
+            store_array(law.stress([f11, f12, f21, f22], &mut []), stress);
         }
+        self.scratch.phases.book(Phase::Volume, clock);
     }
 
     /// ADER: G2P (22), predictor (15)-(21), P2G of the averages (18).
@@ -118,7 +152,7 @@ impl Block<'_> {
         law: &M,
         points: &Points,
         matrices: &PointMatrices<C>,
-        clock: &mut Instant,
+        clock: &mut Clock,
     ) {
         let Method::Ader { time, sweeps } = &self.scheme.method else { return };
         let (kernel, n, np) = (self.scheme.kernel, self.scheme.operators.nodes(), matrices.points());

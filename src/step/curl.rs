@@ -1,6 +1,6 @@
 //! Application of LCF, F <- F - theta C (C^T W F), to one block.
 
-use crate::lane::{Coefficient, F8, Lanes};
+use crate::lane::{Coefficient, F8, Lane, Lanes};
 use crate::operators::{Matrix, Pool, Share};
 
 /// Memory of the projection.
@@ -11,12 +11,31 @@ pub struct Arrays<'a> {
     pub coefficients: &'a mut [F8],
 }
 
+/// 1 - exp(-x) for x >= 0, to 1e-15 relative.
+///
+/// q(y) = 1 - exp(-y) by its series at y = x/64 (x beyond 40, where it is 1, is cut off; the first term left out is
+/// below 1e-15 of the first one), then six times q(2y) = q (2 - q).
+#[inline(always)]
+pub fn relaxation<L: Lane>(x: L) -> L {
+    let y = x.min(L::splat(40.0)) * L::splat(1.0 / 64.0);
+    let mut q = L::splat(1.0);
+    for k in 0..14 {
+        // q_k = 1 - y/(k+1) q_(k+1), from the last: y q_1 = y - y^2/2 + y^3/6 - ...
+        q = L::splat(1.0) - y * L::splat(1.0 / (15 - k) as f64) * q;
+    }
+    q = q * y;
+    for _ in 0..6 {
+        q = q * (L::splat(2.0) - q);
+    }
+    q
+}
+
 /// Relaxes the rows of F in `u` towards gradients by the share `theta` of each lane.
 #[inline(always)]
 pub fn project<L: Lanes>(
     pool: &Pool<Matrix<f64>, Matrix<F8>>,
     block: usize,
-    theta: &F8,
+    theta: L,
     mass: &[F8],
     arrays: Arrays,
     u: &mut [F8],
@@ -28,7 +47,7 @@ pub fn project<L: Lanes>(
 }
 
 #[inline(always)]
-fn with_matrix<L: Lanes, C: Coefficient>(matrix: &Matrix<C>, theta: &F8, mass: &[F8], arrays: Arrays, u: &mut [F8]) {
+fn with_matrix<L: Lanes, C: Coefficient>(matrix: &Matrix<C>, theta: L, mass: &[F8], arrays: Arrays, u: &mut [F8]) {
     let (rows, columns, n) = (matrix.rows, matrix.columns, mass.len());
     let Arrays { weighted, coefficients } = arrays;
     for component in 0..4 {
@@ -36,25 +55,95 @@ fn with_matrix<L: Lanes, C: Coefficient>(matrix: &Matrix<C>, theta: &F8, mass: &
             (L::load(&mass[a]) * L::load(&u[component * n + a])).store(&mut weighted[component * n + a]);
         }
     }
-    let theta = L::load(theta);
-    for column in 0..columns {
-        let mut sum = [L::zero(); 2];
-        for r in 0..rows {
-            let entry = matrix.row(r)[column].lanes::<L>();
-            sum[0] = entry.mul_add(L::load(&weighted[r]), sum[0]);
-            sum[1] = entry.mul_add(L::load(&weighted[rows + r]), sum[1]);
-        }
-        (theta * sum[0]).store(&mut coefficients[column]);
-        (theta * sum[1]).store(&mut coefficients[columns + column]);
+    let mut first = 0;
+    while first + COLUMNS <= columns {
+        coefficients_of::<L, C, COLUMNS>(matrix, first, theta, weighted, coefficients);
+        first += COLUMNS;
     }
-    for r in 0..rows {
-        let mut value = [L::load(&u[r]), L::load(&u[rows + r])];
-        for (column, entry) in matrix.row(r).iter().enumerate() {
-            let entry = -entry.lanes::<L>();
-            value[0] = entry.mul_add(L::load(&coefficients[column]), value[0]);
-            value[1] = entry.mul_add(L::load(&coefficients[columns + column]), value[1]);
+    while first < columns {
+        coefficients_of::<L, C, 1>(matrix, first, theta, weighted, coefficients);
+        first += 1;
+    }
+    let (one, two) = u[..2 * rows].split_at_mut(rows);
+    let mut r = 0;
+    while r + COLUMNS <= rows {
+        subtract::<L, C, COLUMNS>(matrix, r, coefficients, [&mut *one, &mut *two]);
+        r += COLUMNS;
+    }
+    while r < rows {
+        subtract::<L, C, 1>(matrix, r, coefficients, [&mut *one, &mut *two]);
+        r += 1;
+    }
+}
+
+/// Columns (rows) that are worked on together: the sums of both rows of F stay in registers and do not wait for each other.
+const COLUMNS: usize = 3;
+
+/// theta C^T W F of K columns from `first`.
+#[inline(always)]
+fn coefficients_of<L: Lanes, C: Coefficient, const K: usize>(
+    matrix: &Matrix<C>,
+    first: usize,
+    theta: L,
+    weighted: &[F8],
+    coefficients: &mut [F8],
+) {
+    let (rows, columns) = (matrix.rows, matrix.columns);
+    let (one, two) = weighted[..2 * rows].split_at(rows);
+    let mut sum = [[L::zero(); 2]; K];
+    for ((row, one), two) in matrix.data.chunks_exact(columns).zip(one).zip(two) {
+        let (one, two) = (L::load(one), L::load(two));
+        for (sum, entry) in sum.iter_mut().zip(&row[first..first + K]) {
+            let entry = entry.lanes::<L>();
+            sum[0] = entry.mul_add(one, sum[0]);
+            sum[1] = entry.mul_add(two, sum[1]);
         }
-        value[0].store(&mut u[r]);
-        value[1].store(&mut u[rows + r]);
+    }
+    for k in 0..K {
+        (theta * sum[k][0]).store(&mut coefficients[first + k]);
+        (theta * sum[k][1]).store(&mut coefficients[columns + first + k]);
+    }
+}
+
+/// K rows of C times the coefficients, from both rows of F.
+#[inline(always)]
+fn subtract<L: Lanes, C: Coefficient, const K: usize>(
+    matrix: &Matrix<C>,
+    first: usize,
+    coefficients: &[F8],
+    u: [&mut [F8]; 2],
+) {
+    let columns = matrix.columns;
+    let (one, two) = coefficients[..2 * columns].split_at(columns);
+    let entries = &matrix.data[first * columns..(first + K) * columns];
+    let mut sum = [[L::zero(); 2]; K];
+    for (column, (one, two)) in one.iter().zip(two).enumerate() {
+        let (one, two) = (L::load(one), L::load(two));
+        for k in 0..K {
+            let entry = entries[k * columns + column].lanes::<L>();
+            sum[k][0] = entry.mul_add(one, sum[k][0]);
+            sum[k][1] = entry.mul_add(two, sum[k][1]);
+        }
+    }
+    for (i, u) in u.into_iter().enumerate() {
+        for k in 0..K {
+            (L::load(&u[first + k]) - sum[k][i]).store(&mut u[first + k]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn relaxation_is_one_minus_exp_to_rounding_on_its_whole_range() {
+        for i in 0..100_000 {
+            let x = 10f64.powf(-12.0 + 15.0 * i as f64 / 1e5);
+            let relative = (relaxation(x) / -(-x).exp_m1() - 1.0).abs();
+            // Six doublings, each with two roundings, halved on the way for small x: measured 8e-16.
+            assert!(relative < 2e-15, "x = {x}: {relative:e}");
+        }
+        assert_eq!(relaxation(0.0), 0.0);
     }
 }

@@ -1,16 +1,18 @@
 //! `finish`: with the neighbours' traces, flux (3), lift (14), and after the last stage the update (13) and LCF.
 
-use super::balance::{self, FacePower, METERED, Sums};
-use super::volume::Metric;
-use super::{Phase, Scheme, Scratch, Stage, Survey, curl, dense};
+use super::balance::{self, FacePower, Sums};
+use super::phase::Clock;
+use super::sums::Terms;
+use super::volume::{Metric, row, width, with_nodes};
+use super::{Phase, Scheme, Scratch, Stage, Survey, curl};
 use crate::boundary::FacePoint;
-use crate::lane::{F8, LANES, Lanes, Work, load_array};
+use crate::lane::{F8, LANES, Lanes, Work, gather_array, load_array, store_array};
+use crate::material::Law;
 use crate::mesh::map;
-use crate::operators::Neighbour;
-use crate::riemann::{Riemann, TRACE, Trace, interface};
+use crate::operators::{Line, Neighbour, Side};
+use crate::riemann::{Riemann, Trace, interface};
 use crate::state::State;
 use crate::{with_flux, with_law};
-use std::time::Instant;
 
 /// The work on one block.
 pub(super) struct Block<'a> {
@@ -38,86 +40,238 @@ pub(super) struct Block<'a> {
     pub scratch: &'a mut Scratch,
 }
 
-impl Work for Block<'_> {
-    type Out = ();
-    #[inline(always)]
-    fn run<L: Lanes>(mut self) {
-        let mut clock = Instant::now();
-        match self.sums.is_some() {
-            false => with_flux!(self.scheme.flux, riemann => self.fluxes::<L, _, TRACE>(riemann)),
-            true => with_flux!(self.scheme.flux, riemann => self.fluxes::<L, _, METERED>(riemann)),
-        }
-        self.lift::<L>();
+impl Block<'_> {
+    /// All of it.
+    pub fn run(mut self) {
+        let (kernel, operators) = (self.scheme.kernel, &self.scheme.operators);
+        let mut clock = Clock::now();
+        kernel.run(Fluxes(&mut self));
+        let lift = &self.scratch.nodes.lift;
+        let inverse_mass = Metric::of(&operators.geometry, self.block, operators.nodes()).inverse_mass;
+        let line = &operators.line;
+        with_nodes!(line.m, M => kernel.run(Lift::<'_, M> { line, inverse_mass, lift, rate: self.rate }));
         self.scratch.phases.book(Phase::Flux, &mut clock);
         if self.stage.number + 1 < self.scheme.stages() {
             return;
         }
-        self.update::<L>();
+        kernel.run(Update(&mut self));
         self.scratch.phases.book(Phase::Corrector, &mut clock);
-        self.project::<L>();
+        if self.scheme.curl_rate.is_some() {
+            kernel.run(Project(&mut self));
+        }
         self.scratch.phases.book(Phase::CurlFree, &mut clock);
     }
 }
 
-/// A trace of eight lanes from its ten numbers.
-#[inline(always)]
-fn load<L: Lanes>(numbers: &[F8]) -> Trace<L> {
-    let x = load_array::<L, TRACE>(numbers);
-    Trace { f: [x[0], x[1], x[2], x[3]], v: [x[4], x[5]], t: [x[6], x[7]], c: [x[8], x[9]] }
+/// The fluxes of a block.
+struct Fluxes<'a, 'b>(&'a mut Block<'b>);
+
+impl Work for Fluxes<'_, '_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        with_flux!(self.0.scheme.flux, riemann => self.0.fluxes_of::<L, _>(riemann))
+    }
 }
 
-/// The trace of one lane.
-fn lane_of(numbers: &[F8], lane: usize) -> Trace<f64> {
-    let x: [f64; TRACE] = std::array::from_fn(|k| numbers[k].0[lane]);
-    Trace { f: [x[0], x[1], x[2], x[3]], v: [x[4], x[5]], t: [x[6], x[7]], c: [x[8], x[9]] }
+/// The update (13) of a block.
+struct Update<'a, 'b>(&'a mut Block<'b>);
+
+impl Work for Update<'_, '_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.0.update::<L>();
+    }
+}
+
+/// LCF of a block.
+struct Project<'a, 'b>(&'a mut Block<'b>);
+
+impl Work for Project<'_, '_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.0.project::<L>();
+    }
+}
+
+/// A trace of eight lanes from its numbers.
+#[inline(always)]
+fn trace_of<L: Lanes, R: Riemann, const W: usize>(x: &[L; W]) -> Trace<L> {
+    let shear = if R::SHEAR { x[9] } else { L::zero() };
+    Trace { f: [x[0], x[1], x[2], x[3]], v: [x[4], x[5]], t: [x[6], x[7]], c: [x[8], shear] }
+}
+
+/// The other side's trace with this side's normal: its traction is P N^+ with N^+ = -N, and so is s = P T, which stands
+/// behind c.
+#[inline(always)]
+fn turned<L: Lanes, const W: usize>(mut x: [L; W]) -> [L; W] {
+    x[6] = -x[6];
+    x[7] = -x[7];
+    if W >= width(false, true) {
+        x[W - 2] = -x[W - 2];
+        x[W - 1] = -x[W - 1];
+    }
+    x
+}
+
+/// Numbers of a face for the kernel.
+struct Face<'a, const W: usize> {
+    /// Own traces, by point.
+    own: &'a [[F8; W]],
+    /// Where the other side's are: by point, or lane by lane, then from `gathered`.
+    aligned: Option<&'a [[F8; W]]>,
+    /// First number of each lane at the first point, and what to add for the next one.
+    at: [usize; LANES],
+    step: [isize; LANES],
+    /// Whether a lane is at a boundary or at another material.
+    special: bool,
 }
 
 impl Block<'_> {
+    #[inline(always)]
+    fn fluxes_of<L: Lanes, R: Riemann>(&mut self, riemann: &R) {
+        match (R::SHEAR, self.sums.is_some()) {
+            (false, false) => self.fluxes::<L, R, { width(false, false) }>(riemann),
+            (true, false) => self.fluxes::<L, R, { width(true, false) }>(riemann),
+            (false, true) => self.fluxes::<L, R, { width(false, true) }>(riemann),
+            (true, true) => self.fluxes::<L, R, { width(true, true) }>(riemann),
+        }
+    }
+
+    /// How to read a face.
+    #[inline(always)]
+    fn face<const W: usize>(&self, face: usize) -> Face<'_, W> {
+        let (blocks, m) = (&self.scheme.operators.blocks, self.scheme.operators.line.m);
+        let traces = self.traces.as_chunks::<W>().0;
+        let plan = blocks.plan[self.block][face];
+        let at = (4 * self.block + face) * m;
+        let mut out =
+            Face { own: &traces[at..at + m], aligned: None, at: [0; LANES], step: [0; LANES], special: plan.special };
+        let across = match plan.side {
+            Side::Aligned(there) => {
+                out.aligned = Some(&traces[there * m..there * m + m]);
+                return out;
+            }
+            Side::Gathered(entry) => blocks.gathered[entry],
+        };
+        let stride = (W * LANES) as isize;
+        for lane in 0..LANES {
+            let there = &across[lane];
+            let point = if there.flip { m - 1 } else { 0 };
+            out.at[lane] = (there.face * m + point) * W * LANES + there.lane;
+            out.step[lane] = if there.flip { -stride } else { stride };
+        }
+        out
+    }
+
     /// Lifted numbers of all faces: len w_k (Flux* - own flux of the F rows), [face][component][point]. Traces have W
-    /// numbers; those of METERED are for the balance.
+    /// numbers.
     #[inline(always)]
     fn fluxes<L: Lanes, R: Riemann, const W: usize>(&mut self, riemann: &R) {
         let operators = &self.scheme.operators;
-        let (m, n) = (operators.line.m, operators.nodes());
-        let metric = Metric::of(&operators.geometry, self.block, n);
-        let density = self.scheme.laws[operators.blocks.material[self.block]].density();
+        let m = operators.line.m;
+        let metric = Metric::of(&operators.geometry, self.block, operators.nodes());
+        let density = L::splat(self.scheme.laws[operators.blocks.material[self.block]].density());
+        // Moved out while the faces are looked at.
+        let (mut lift, mut sums) = (std::mem::take(&mut self.scratch.nodes.lift), self.sums.take());
+        let metered = sums.is_some();
         for face in 0..4 {
             let normal = load_array::<L, 2>(&metric.normal[2 * face..2 * face + 2]);
             let length = L::load(&metric.length[face]);
-            for point in 0..m {
-                let at = ((4 * self.block + face) * m + point) * W;
-                let own = &self.traces[at..at + W];
-                let mut other = [F8::ZERO; W];
-                self.gather(face, point, own, &mut other);
-                let (minus, plus) = (load::<L>(own), load::<L>(&other));
-                let flux = riemann.flux(&minus, &plus, normal, L::splat(density));
-                let mut stored = [F8::ZERO; 6];
-                for k in 0..6 {
-                    flux[k].store(&mut stored[k]);
+            let out = &mut lift[face * 6 * m..(face + 1) * 6 * m];
+            let Face { own: numbers, aligned, mut at, step, special } = self.face::<W>(face);
+            for (point, &weight) in operators.line.basis.weights[..m].iter().enumerate() {
+                let own = load_array::<L, W>(&numbers[point]);
+                let other = match aligned {
+                    Some(there) => load_array::<L, W>(&there[point]),
+                    None => {
+                        let numbers = gather_array::<L, W>(self.traces, &at);
+                        for lane in 0..LANES {
+                            at[lane] = at[lane].wrapping_add_signed(step[lane]);
+                        }
+                        numbers
+                    }
+                };
+                let mut other = turned(other);
+                let minus = trace_of::<L, R, W>(&own);
+                let mut flux = riemann.flux(&minus, &trace_of::<L, R, W>(&other), normal, density);
+                let scale = length * L::splat(weight);
+                if special {
+                    if metered {
+                        other = self.without_jumps::<L, W>(face, own, other);
+                    }
+                    flux = self.patched::<L, R, W>(face, point, other, flux);
                 }
-                self.special(face, point, own, &other, &mut stored);
-                let scale = length * L::splat(operators.line.basis.weights[point]);
-                if W > TRACE {
-                    self.meter::<L>(face, &FacePower { minus: own, plus: &other, flux: &stored }, scale, normal);
+                if W >= width(false, true) {
+                    self.meter::<L, W>((face, point), (other, flux), (scale, normal), &mut sums);
                 }
                 for k in 0..6 {
-                    let mut lifted = L::load(&stored[k]);
+                    let mut lifted = flux[k];
                     if k < 4 {
                         lifted = minus.v[k / 2].mul_add(normal[k % 2], lifted);
                     }
-                    (lifted * scale).store(&mut self.scratch.nodes.lift[(face * 6 + k) * m + point]);
+                    (lifted * scale).store(&mut out[k * m + point]);
                 }
             }
         }
+        (self.scratch.nodes.lift, self.sums) = (lift, sums);
+    }
+
+    /// The other side's numbers, with the own ones in lanes at a boundary: these have no jumps for the balance.
+    #[inline(always)]
+    fn without_jumps<L: Lanes, const W: usize>(&self, face: usize, own: [L; W], other: [L; W]) -> [L; W] {
+        let (mut here, mut there) = ([F8::ZERO; W], [F8::ZERO; W]);
+        store_array(own, &mut here);
+        store_array(other, &mut there);
+        for (lane, neighbour) in self.scheme.operators.blocks.neighbours[self.block][face].iter().enumerate() {
+            if matches!(neighbour, Neighbour::Boundary(_)) {
+                (0..W).for_each(|k| there[k].0[lane] = here[k].0[lane]);
+            }
+        }
+        load_array::<L, W>(&there)
+    }
+
+    /// The own numbers of a face point.
+    #[inline(always)]
+    fn own(&self, face: usize, point: usize, w: usize) -> &[F8] {
+        let at = ((4 * self.block + face) * self.scheme.operators.line.m + point) * w;
+        &self.traces[at..at + w]
+    }
+
+    /// The flux with lanes at a boundary or at another material put right.
+    #[inline(always)]
+    fn patched<L: Lanes, R: Riemann, const W: usize>(
+        &self,
+        face: usize,
+        point: usize,
+        other: [L; W],
+        flux: [L; 6],
+    ) -> [L; 6] {
+        let (mut there, mut stored) = ([F8::ZERO; W], [F8::ZERO; 6]);
+        store_array(other, &mut there);
+        store_array(flux, &mut stored);
+        self.special(face, point, [self.own(face, point, W), &there], R::SHEAR, &mut stored);
+        load_array::<L, 6>(&stored)
     }
 
     /// What a face point adds to the balance of the block; `scale` is w len.
     #[inline(always)]
-    fn meter<L: Lanes>(&mut self, face: usize, power: &FacePower, scale: L, normal: [L; 2]) {
-        let Some(sums) = self.sums.as_mut() else { return };
-        let mut weight = F8::ZERO;
+    fn meter<L: Lanes, const W: usize>(
+        &self,
+        (face, point): (usize, usize),
+        (other, flux): ([L; W], [L; 6]),
+        (scale, normal): (L, [L; 2]),
+        sums: &mut Option<&mut Sums>,
+    ) {
+        let Some(sums) = sums else { return };
+        let (mut weight, mut there, mut stored) = (F8::ZERO, [F8::ZERO; W], [F8::ZERO; 6]);
         (scale * L::splat(self.stage.dt * self.scheme.weight(self.stage.number))).store(&mut weight);
-        power.jumps::<L>(&weight, normal, &mut sums.flux_dissipation);
+        store_array(other, &mut there);
+        store_array(flux, &mut stored);
+        let power = FacePower { minus: self.own(face, point, W), plus: &there, flux: &stored };
+        power.jumps::<L, W>(&weight, normal, &mut sums.flux_dissipation);
         let operators = &self.scheme.operators;
         for (lane, neighbour) in operators.blocks.neighbours[self.block][face].iter().enumerate() {
             if matches!(neighbour, Neighbour::Boundary(_)) {
@@ -128,49 +282,30 @@ impl Block<'_> {
         }
     }
 
-    /// The traces of the other side, seen with this side's normal. Where there is no cell, the own trace.
-    #[inline(always)]
-    fn gather<const W: usize>(&self, face: usize, point: usize, own: &[F8], other: &mut [F8; W]) {
-        let m = self.scheme.operators.line.m;
-        let numbers = crate::lane::as_f64(self.traces);
-        for (lane, neighbour) in self.scheme.operators.blocks.neighbours[self.block][face].iter().enumerate() {
-            match *neighbour {
-                Neighbour::Cell(across) | Neighbour::Interface(across, _) => {
-                    let there = if across.flip { m - 1 - point } else { point };
-                    let from = &numbers[(across.face * m + there) * W * LANES + across.lane..];
-                    for k in 0..W {
-                        other[k].0[lane] = from[k * LANES];
-                    }
-                    // The neighbour's traction is P N^+ with N^+ = -N.
-                    other[6].0[lane] = -other[6].0[lane];
-                    other[7].0[lane] = -other[7].0[lane];
-                    for s in &mut other[TRACE..] {
-                        s.0[lane] = -s.0[lane];
-                    }
-                }
-                Neighbour::Boundary(_) | Neighbour::Padding => {
-                    (0..W).for_each(|k| other[k].0[lane] = own[k].0[lane]);
-                }
-            }
-        }
-    }
-
-    /// Lanes at a boundary or at another material: their fluxes, one by one.
-    fn special(&self, face: usize, point: usize, own: &[F8], other: &[F8], flux: &mut [F8; 6]) {
+    /// Lanes at a boundary or at another material: their fluxes, one by one, from the numbers of both sides.
+    fn special(&self, face: usize, point: usize, sides: [&[F8]; 2], shear: bool, flux: &mut [F8; 6]) {
         let blocks = &self.scheme.operators.blocks;
+        let law = &self.scheme.laws[blocks.material[self.block]];
         for (lane, neighbour) in blocks.neighbours[self.block][face].iter().enumerate() {
-            let law = &self.scheme.laws[blocks.material[self.block]];
-            let result = match *neighbour {
-                Neighbour::Boundary(group) => {
-                    let at = self.face_point(face, point, lane, law.density());
-                    self.scheme.boundaries[group].flux(&lane_of(own, lane), &at, self.stage.times)
-                }
-                Neighbour::Interface(_, material) => {
-                    let at = self.face_point(face, point, lane, law.density());
-                    let densities = [law.density(), self.scheme.laws[material].density()];
-                    interface(&lane_of(own, lane), &lane_of(other, lane), at.normal, densities)
-                }
+            let group = match *neighbour {
+                Neighbour::Boundary(group) => Some(group),
+                Neighbour::Interface(..) => None,
                 Neighbour::Cell(_) | Neighbour::Padding => continue,
+            };
+            let at = self.face_point(face, point, lane, law.density());
+            let trace = |side: usize, law: &Law| {
+                let x = |k: usize| sides[side][k].0[lane];
+                let f = [x(0), x(1), x(2), x(3)];
+                let c = if shear { [x(8), x(9)] } else { law.speeds(f, at.normal) };
+                Trace { f, v: [x(4), x(5)], t: [x(6), x(7)], c }
+            };
+            let result = match (group, *neighbour) {
+                (Some(group), _) => self.scheme.boundaries[group].flux(&trace(0, law), &at, self.stage.times),
+                (None, Neighbour::Interface(_, material)) => {
+                    let other = &self.scheme.laws[material];
+                    interface(&trace(0, law), &trace(1, other), at.normal, [law.density(), other.density()])
+                }
+                _ => continue,
             };
             (0..6).for_each(|k| flux[k].0[lane] = result[k]);
         }
@@ -186,44 +321,14 @@ impl Block<'_> {
         FacePoint { x, normal, density }
     }
 
-    /// dU_a/dt -= Phi_a(x_fk) lifted_fk / (w_a J_a).
-    #[inline(always)]
-    fn lift<L: Lanes>(&mut self) {
-        let operators = &self.scheme.operators;
-        let (line, m, n) = (&operators.line, operators.line.m, operators.nodes());
-        let metric = Metric::of(&operators.geometry, self.block, n);
-        for k in 0..6 {
-            let lift = &self.scratch.nodes.lift[..24 * m];
-            let (left, right) = (&lift[k * m..], &lift[(6 + k) * m..]);
-            let (bottom, top) = (&lift[(12 + k) * m..], &lift[(18 + k) * m..]);
-            for i in 0..m {
-                for j in 0..m {
-                    let a = i * m + j;
-                    let mut sum = L::splat(line.ends[0][i]) * L::load(&left[j]);
-                    sum = L::splat(line.ends[1][i]).mul_add(L::load(&right[j]), sum);
-                    sum = L::splat(line.ends[0][j]).mul_add(L::load(&bottom[i]), sum);
-                    sum = L::splat(line.ends[1][j]).mul_add(L::load(&top[i]), sum);
-                    let rate = L::load(&self.rate[k * n + a]);
-                    (rate - sum * L::load(&metric.inverse_mass[a])).store(&mut self.rate[k * n + a]);
-                }
-            }
-        }
-    }
-
     /// U^(n+1) = U^n + dt sum_s b_s k_s.
     #[inline(always)]
     fn update<L: Lanes>(&mut self) {
-        let stride = self.rate.len();
+        let (stride, dt, last) = (self.rate.len(), self.stage.dt, self.stage.number);
         let begin = stride * self.block;
-        self.next.copy_from_slice(&self.state.u[begin..begin + stride]);
-        let dt = self.stage.dt;
-        let weight = |stage: usize| self.scheme.weight(stage);
-        for (stage, rate) in self.before.iter().enumerate() {
-            if weight(stage) != 0.0 {
-                dense::add_scaled::<L>(dt * weight(stage), &rate[begin..begin + stride], self.next);
-            }
-        }
-        dense::add_scaled::<L>(dt * weight(self.stage.number), self.rate, self.next);
+        let factors = (0..last).map(|stage| dt * self.scheme.weight(stage));
+        let terms = Terms::new(factors, self.before, begin, stride).and(dt * self.scheme.weight(last), self.rate);
+        terms.add_to::<L>(&self.state.u[begin..begin + stride], self.next);
     }
 
     /// LCF with theta = 1 - exp(-alpha c dt / h), c the cell's largest current speed.
@@ -231,8 +336,9 @@ impl Block<'_> {
     fn project<L: Lanes>(&mut self) {
         let operators = &self.scheme.operators;
         let (Some(rate), Some(curl_free)) = (self.scheme.curl_rate, &operators.curl_free) else { return };
-        let (c, h) = (&self.survey.speed[self.block].0, &operators.geometry.h[self.block].0);
-        let theta = F8(std::array::from_fn(|lane| -(-rate * c[lane] * self.stage.dt / h[lane]).exp_m1()));
+        let (c, h) = (&self.survey.speed[self.block], &operators.geometry.h[self.block]);
+        let decay = L::load(c) * L::splat(rate * self.stage.dt) / L::load(h);
+        let theta = curl::relaxation(decay);
         let mass = Metric::of(&operators.geometry, self.block, operators.nodes()).mass;
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
         let one = L::splat(1.0);
@@ -242,10 +348,43 @@ impl Block<'_> {
         }
         let nodes = &mut self.scratch.nodes;
         let arrays = curl::Arrays { weighted: &mut nodes.weighted, coefficients: &mut nodes.coefficients };
-        curl::project::<L>(&curl_free.pool, self.block, &theta, mass, arrays, self.next);
+        curl::project::<L>(&curl_free.pool, self.block, theta, mass, arrays, self.next);
         if let Some(sums) = self.sums.as_mut() {
             let after = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, self.next));
             balance::add(-one, after, &mut sums.curl_dissipation);
+        }
+    }
+}
+
+/// dU_a/dt -= Phi_a(x_fk) lifted_fk / (w_a J_a).
+struct Lift<'a, const M: usize> {
+    line: &'a Line,
+    inverse_mass: &'a [F8],
+    /// [face][component][point].
+    lift: &'a [F8],
+    rate: &'a mut [F8],
+}
+
+impl<const M: usize> Work for Lift<'_, M> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let n = M * M;
+        let ends = [row::<M>(&self.line.ends[0]), row::<M>(&self.line.ends[1])];
+        let lift = &self.lift.as_chunks::<M>().0[..24];
+        let inverse_mass = &self.inverse_mass[..n];
+        for (k, rate) in self.rate.chunks_exact_mut(n).enumerate().take(6) {
+            let (left, right, bottom, top) = (&lift[k], &lift[6 + k], &lift[12 + k], &lift[18 + k]);
+            for i in 0..M {
+                for j in 0..M {
+                    let a = i * M + j;
+                    let mut sum = L::splat(ends[0][i]) * L::load(&left[j]);
+                    sum = L::splat(ends[1][i]).mul_add(L::load(&right[j]), sum);
+                    sum = L::splat(ends[0][j]).mul_add(L::load(&bottom[i]), sum);
+                    sum = L::splat(ends[1][j]).mul_add(L::load(&top[i]), sum);
+                    (L::load(&rate[a]) - sum * L::load(&inverse_mass[a])).store(&mut rate[a]);
+                }
+            }
         }
     }
 }

@@ -14,6 +14,7 @@ mod finish;
 pub mod phase;
 mod predictor;
 mod runge_kutta;
+mod sums;
 mod survey;
 pub mod sweeps;
 mod volume;
@@ -30,7 +31,7 @@ use crate::boundary::{Boundary, TimeNode};
 use crate::lane::{F8, Kernel};
 use crate::material::Law;
 use crate::operators::Operators;
-use crate::riemann::{Flux, TRACE};
+use crate::riemann::Flux;
 use crate::source::Source;
 use crate::state::State;
 use rayon::iter::Either;
@@ -77,12 +78,14 @@ pub struct Work {
     pub next: State,
     /// dU/dt of each stage, as `State::u`.
     rates: Vec<Vec<F8>>,
-    /// Traces of all faces: [block][face][point][TRACE numbers, or METERED with the balance].
+    /// Traces of all faces: [block][face][point][`volume::width` numbers].
     traces: Vec<F8>,
     /// The balance of the step, by block; none where nobody asks for it.
     balance: Option<Vec<balance::Sums>>,
     /// One a thread.
     scratch: Vec<Mutex<Scratch>>,
+    /// The clock of the phases.
+    rate: phase::Rate,
 }
 
 /// Arrays of one block, and the seconds that its thread spent on each phase.
@@ -90,7 +93,7 @@ pub struct Work {
 pub(crate) struct Scratch {
     pub points: predictor::Arrays,
     pub nodes: volume::Arrays,
-    pub phases: Phases,
+    pub phases: phase::Ticks,
 }
 
 impl Work {
@@ -103,24 +106,25 @@ impl Work {
             Mutex::new(Scratch {
                 points: predictor::Arrays::new(points, operators.line.m, &scheme.method, !scheme.sources.is_empty()),
                 nodes: volume::Arrays::new(operators.line.m, state.components),
-                phases: Phases::default(),
+                phases: phase::Ticks::default(),
             })
         };
         Self {
             next: state.clone(),
             rates: vec![vec![F8::ZERO; state.u.len()]; scheme.stages()],
-            traces: vec![F8::ZERO; operators.blocks.len() * 4 * operators.line.m * TRACE],
+            traces: scheme.room_for_traces(false),
             balance: None,
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
+            rate: phase::Rate::start(),
         }
     }
 
     /// Seconds per phase, summed over threads, since the last call.
     pub fn take_phases(&mut self) -> Phases {
-        let mut sum = Phases::default();
+        let (mut sum, rate) = (Phases::default(), self.rate.measure());
         for scratch in &mut self.scratch {
-            let phases = scratch.get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());
-            sum.add(&std::mem::take(&mut phases.phases));
+            let scratch = scratch.get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());
+            sum.add(&std::mem::take(&mut scratch.phases).seconds(rate));
         }
         sum
     }
@@ -206,8 +210,7 @@ impl Scheme {
         let outputs = now[0].par_chunks_mut(stride).zip(work.traces.par_chunks_mut(traces.max(1)));
         outputs.zip(sums(&mut work.balance, blocks)).enumerate().for_each(|(block, ((rate, traces), sums))| {
             with_scratch(scratch, |scratch| {
-                let work = begin::Block { scheme: self, stage, block, state, before, rate, traces, sums, scratch };
-                self.kernel.run(work)
+                begin::Block { scheme: self, stage, block, state, before, rate, traces, sums, scratch }.run()
             })
         });
     }
@@ -221,7 +224,7 @@ impl Scheme {
         let sums = sums(&mut work.balance, self.operators.blocks.len());
         outputs.zip(sums).enumerate().for_each(|(block, ((rate, next), sums))| {
             with_scratch(scratch, |scratch| {
-                let work = finish::Block {
+                let block = finish::Block {
                     scheme: self,
                     stage,
                     block,
@@ -234,9 +237,15 @@ impl Scheme {
                     sums,
                     scratch,
                 };
-                self.kernel.run(work)
+                block.run()
             })
         });
+    }
+
+    /// Memory for the traces of all faces.
+    fn room_for_traces(&self, metered: bool) -> Vec<F8> {
+        let faces = 4 * self.operators.blocks.len() * self.operators.line.m;
+        vec![F8::ZERO; faces * volume::width(self.flux.has_shear(), metered)]
     }
 
     /// What the rate of a stage counts in U^(n+1) = U^n + dt sum_s b_s k_s; 1 for ADER.

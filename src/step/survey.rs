@@ -1,15 +1,15 @@
 //! The health of a state: current wave speeds (for dt and LCF), min J, and where stability was lost.
 
+use super::phase::Clock;
 use super::predictor::transfer::ToPoints;
 use super::{Phase, Scheme, Scratch, Work as Memory, dense, with_scratch};
-use crate::lane::{Coefficient, F8, Lanes, Work, load_array};
+use crate::lane::{Coefficient, F8, Lanes, Work};
 use crate::material::Material;
 use crate::operators::{Matrix, PointMatrices, Share};
 use crate::state::State;
 use crate::tensor;
 use crate::with_law;
 use rayon::prelude::*;
-use std::time::Instant;
 
 /// What a state tells before it is stepped.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -145,25 +145,37 @@ impl Work for Block<'_> {
     type Out = Found;
     #[inline(always)]
     fn run<L: Lanes>(self) -> Found {
-        let mut clock = Instant::now();
+        let mut clock = Clock::now();
         let operators = &self.scheme.operators;
         let stride = self.state.components * operators.nodes();
         let u = &self.state.u[stride * self.block..stride * (self.block + 1)];
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
-        let (nodes, arrays) = (&mut self.scratch.nodes.stage, &mut self.scratch.points);
-        let (points, between) = (&mut arrays.start, &mut arrays.between);
-        dense::interleave::<4>(u, operators.nodes(), nodes);
-        let nodes = &nodes[..4 * operators.nodes()];
-        let count = match operators.points.as_ref().map(|p| (p, p.pool.share[self.block])) {
-            None => operators.nodes(),
-            Some((p, Share::Shared(k))) => to_points::<L, _>(&p.pool.shared[k], nodes, between, points),
-            Some((p, Share::Own(k))) => to_points::<L, _>(&p.pool.own[k], nodes, between, points),
+        let n = operators.nodes();
+        let found = match &operators.points {
+            None => with_law!(law, law => examine::<L, _>(law, &Strided { f: u, count: n, point: 1, component: n }, u)),
+            Some(points) => {
+                let (nodes, arrays) = (&mut self.scratch.nodes.stage, &mut self.scratch.points);
+                let (f, between) = (&mut arrays.start, &mut arrays.between);
+                dense::interleave::<4>(u, n, nodes);
+                let nodes = &nodes[..4 * n];
+                let count = match points.pool.share[self.block] {
+                    Share::Shared(k) => to_points::<L, _>(&points.pool.shared[k], nodes, between, f),
+                    Share::Own(k) => to_points::<L, _>(&points.pool.own[k], nodes, between, f),
+                };
+                with_law!(law, law => examine::<L, _>(law, &Strided { f, count, point: 4, component: 1 }, u))
+            }
         };
-        let f = if operators.points.is_some() { &points[..4 * count] } else { &nodes[..4 * count] };
-        let found = with_law!(law, law => examine::<L, _>(law, f, u));
         self.scratch.phases.book(Phase::Survey, &mut clock);
         found
     }
+}
+
+/// F at `count` points: component k of point p at `point` p + `component` k.
+struct Strided<'a> {
+    f: &'a [F8],
+    count: usize,
+    point: usize,
+    component: usize,
 }
 
 /// F at the points; the number of points.
@@ -179,20 +191,34 @@ fn to_points<L: Lanes, C: Coefficient>(
 }
 
 #[inline(always)]
-fn examine<L: Lanes, M: Material>(law: &M, f: &[F8], u: &[F8]) -> Found {
-    let (mut speed, mut min_j, mut poison) = (L::zero(), L::splat(f64::INFINITY), L::zero());
-    for f in f.as_chunks::<4>().0 {
-        let f = load_array::<L, 4>(f);
-        let c = law.largest_speeds(f);
-        speed = speed.max(c[0]);
+fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, u: &[F8]) -> Found {
+    let (mut fastest, mut slowest, mut min_j) = (L::zero(), L::splat(f64::INFINITY), L::splat(f64::INFINITY));
+    let mut poison = [L::zero(); 4];
+    for p in 0..points.count {
+        let mut f = [L::zero(); 4];
+        for k in 0..4 {
+            f[k] = L::load(&points.f[points.point * p + points.component * k]);
+        }
+        let squares = law.largest_squares(f);
+        fastest = fastest.max(squares[0]);
+        slowest = slowest.min(squares[1]);
         min_j = min_j.min(tensor::det(f));
-        poison = poison + L::zero() * (c[0] + c[1]);
+        poison[p % 4] = (squares[0] + squares[1]).mul_add(L::zero(), poison[p % 4]);
     }
-    for x in u {
-        poison = L::load(x).mul_add(L::zero(), poison);
+    // Four sums that do not wait for each other; the number of unknowns of a block is even, what is left are two.
+    let (fours, rest) = u.as_chunks::<4>();
+    for u in fours {
+        for k in 0..4 {
+            poison[k] = L::load(&u[k]).mul_add(L::zero(), poison[k]);
+        }
     }
+    for u in rest {
+        poison[0] = L::load(u).mul_add(L::zero(), poison[0]);
+    }
+    // The root of a negative square is NaN, too.
+    let poison = (poison[0] + poison[1]) + (poison[2] + poison[3]) + L::zero() * slowest.sqrt();
     let mut found = Found { speed: F8::ZERO, min_j: F8::ZERO, poison: F8::ZERO };
-    speed.store(&mut found.speed);
+    fastest.sqrt().store(&mut found.speed);
     min_j.store(&mut found.min_j);
     poison.store(&mut found.poison);
     found

@@ -1,0 +1,87 @@
+//! Sums of Runge-Kutta stages, U + sum_j factor_j k_j, read from memory once.
+
+use crate::lane::{F8, Lanes};
+
+/// Most stages of a tableau.
+const STAGES: usize = 12;
+
+/// The terms factor_j k_j of a block.
+#[derive(Clone, Copy)]
+pub struct Terms<'a> {
+    list: [(f64, &'a [F8]); STAGES],
+    count: usize,
+}
+
+impl<'a> Terms<'a> {
+    /// Of those `factors` that are not zero, `rates` being those of all blocks, cut at `begin` to `len` numbers.
+    pub fn new(factors: impl Iterator<Item = f64>, rates: &'a [Vec<F8>], begin: usize, len: usize) -> Self {
+        let mut terms = Self { list: [(0.0, &[]); STAGES], count: 0 };
+        for (factor, rate) in factors.zip(rates).filter(|(factor, _)| *factor != 0.0).take(STAGES) {
+            terms.list[terms.count] = (factor, &rate[begin..begin + len]);
+            terms.count += 1;
+        }
+        terms
+    }
+
+    /// With one more.
+    pub fn and(mut self, factor: f64, rate: &'a [F8]) -> Self {
+        if factor != 0.0 && self.count < STAGES {
+            self.list[self.count] = (factor, rate);
+            self.count += 1;
+        }
+        self
+    }
+
+    /// out = base + the sum; all have the length of `out`.
+    #[inline(always)]
+    pub fn add_to<L: Lanes>(&self, base: &[F8], out: &mut [F8]) {
+        let (fours, rest) = self.list[..self.count].as_chunks::<4>();
+        // Four terms a pass; a pass goes on from the sum of the one before.
+        let mut first = Some(base);
+        for terms in fours {
+            pass::<L, 4>(first.take(), *terms, out);
+        }
+        match *rest {
+            [a] => pass::<L, 1>(first, [a], out),
+            [a, b] => pass::<L, 2>(first, [a, b], out),
+            [a, b, c] => pass::<L, 3>(first, [a, b, c], out),
+            _ => {
+                if let Some(base) = first {
+                    out.copy_from_slice(&base[..out.len()]);
+                }
+            }
+        }
+    }
+}
+
+/// out = base (or out, where there is none) + K terms.
+#[inline(always)]
+fn pass<L: Lanes, const K: usize>(base: Option<&[F8]>, terms: [(f64, &[F8]); K], out: &mut [F8]) {
+    let len = out.len();
+    let (mut factor, mut rate) = ([L::zero(); K], [&[] as &[F8]; K]);
+    for k in 0..K {
+        factor[k] = L::splat(terms[k].0);
+        rate[k] = &terms[k].1[..len];
+    }
+    match base {
+        Some(base) => {
+            let base = &base[..len];
+            for e in 0..len {
+                let mut sum = L::load(&base[e]);
+                for k in 0..K {
+                    sum = factor[k].mul_add(L::load(&rate[k][e]), sum);
+                }
+                sum.store(&mut out[e]);
+            }
+        }
+        None => {
+            for e in 0..len {
+                let mut sum = L::load(&out[e]);
+                for k in 0..K {
+                    sum = factor[k].mul_add(L::load(&rate[k][e]), sum);
+                }
+                sum.store(&mut out[e]);
+            }
+        }
+    }
+}
