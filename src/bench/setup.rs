@@ -5,7 +5,6 @@ use crate::error::{Error, Result};
 use crate::lane::Kernel;
 use crate::mesh::{self, Mesh};
 use crate::operators::Operators;
-use crate::riemann::TRACE;
 use crate::run::Settings;
 use crate::scene::{Method, Scene};
 use crate::state::{State, UNKNOWNS};
@@ -142,7 +141,8 @@ impl Setup {
         let random = self.method == Method::AderDgmpm && self.layout.as_deref() == Some("jitter");
         // State, its start, its copy at the end, the next one, the numbers before they are packed; rates.
         let unknowns = UNKNOWNS * n * (5 + stages);
-        let geometry = 6 * n + 4 * m * TRACE + 6 * np;
+        // A trace has at most ten numbers.
+        let geometry = 6 * n + 4 * m * 10 + 6 * np;
         // One copy of each class while they are built, one in blocks.
         let own = 2 * (usize::from(random) * (2 * n * np + 2 * np * np) + usize::from(files) * 2 * n * n);
         MESH + 8 * (unknowns + geometry + own)

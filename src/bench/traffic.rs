@@ -2,7 +2,6 @@
 
 use super::Problem;
 use crate::operators::Operators;
-use crate::riemann::TRACE;
 use crate::step::Method;
 
 /// Bytes of a cell in one step: each sweep (`begin` and `finish` of a stage, the survey) reads and writes its arrays
@@ -10,7 +9,7 @@ use crate::step::Method;
 pub fn traffic(problem: &Problem) -> f64 {
     let operators = &problem.scheme.operators;
     let unknowns = size_of_val(&problem.start.u[..]) as f64;
-    let traces = (operators.blocks.len() * 4 * operators.line.m * TRACE * size_of::<crate::lane::F8>()) as f64;
+    let traces = problem.scheme.trace_bytes() as f64;
     let geometry = operators.geometry.bytes() as f64;
     let Operators { points, curl_free, .. } = operators;
     let points = points.as_ref().map_or(0, |points| points.bytes()) as f64;

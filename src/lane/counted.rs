@@ -6,7 +6,7 @@
 //!
 //! One operation on eight lanes counts once: flops are those of one cell where each lane holds a cell.
 
-use super::{F8, Lane, Lanes, Portable};
+use super::{F8, LANES, Lane, Lanes, Portable};
 use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -158,6 +158,10 @@ impl Lanes for Counted {
     #[inline(never)]
     fn store(self, to: &mut F8) {
         self.0.store(to);
+    }
+    #[inline(never)]
+    fn from_lanes(numbers: [f64; LANES]) -> Counted {
+        Counted(Portable::from_lanes(numbers))
     }
 }
 

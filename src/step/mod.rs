@@ -244,8 +244,17 @@ impl Scheme {
 
     /// Memory for the traces of all faces.
     fn room_for_traces(&self, metered: bool) -> Vec<F8> {
-        let faces = 4 * self.operators.blocks.len() * self.operators.line.m;
-        vec![F8::ZERO; faces * volume::width(self.flux.has_shear(), metered)]
+        vec![F8::ZERO; self.trace_numbers(metered)]
+    }
+
+    fn trace_numbers(&self, metered: bool) -> usize {
+        let points = 4 * self.operators.blocks.len() * self.operators.line.m;
+        points * volume::width(self.flux.has_shear(), metered)
+    }
+
+    /// Bytes of the traces of all faces, without the balance.
+    pub fn trace_bytes(&self) -> usize {
+        self.trace_numbers(false) * size_of::<F8>()
     }
 
     /// What the rate of a stage counts in U^(n+1) = U^n + dt sum_s b_s k_s; 1 for ADER.
