@@ -33,20 +33,25 @@ pub trait Material {
     /// Acoustic tensor B_ij = N_a (dP_ia/dF_jb) N_b, [B11, B12, B22] in Pa, elastic.
     fn acoustic<L: Lane>(&self, f: [L; 4], n: [L; 2]) -> [L; 3];
 
+    /// Eigenvalues (larger, smaller) of B(N), rho0 c_p^2 and rho0 c_s^2, in Pa.
+    #[inline(always)]
+    fn moduli<L: Lane>(&self, f: [L; 4], n: [L; 2]) -> [L; 2] {
+        let [b11, b12, b22] = self.acoustic(f, n);
+        tensor::eigenvalues(b11, b12, b22)
+    }
+
     /// Current speeds (c_p, c_s) = sqrt(eig B(N) / rho0) in m/s; NaN where hyperbolicity is lost.
     #[inline(always)]
     fn speeds<L: Lane>(&self, f: [L; 4], n: [L; 2]) -> [L; 2] {
-        let [b11, b12, b22] = self.acoustic(f, n);
         let inverse = L::splat(1.0 / self.density());
-        let [larger, smaller] = tensor::eigenvalues(b11, b12, b22);
+        let [larger, smaller] = self.moduli(f, n);
         [(larger * inverse).sqrt(), (smaller * inverse).sqrt()]
     }
 
     /// c_p alone, for fluxes that need no c_s; the bits of [`Material::speeds`].
     #[inline(always)]
     fn pressure_speed<L: Lane>(&self, f: [L; 4], n: [L; 2]) -> L {
-        let [b11, b12, b22] = self.acoustic(f, n);
-        (tensor::eigenvalues(b11, b12, b22)[0] * L::splat(1.0 / self.density())).sqrt()
+        (self.moduli(f, n)[0] * L::splat(1.0 / self.density())).sqrt()
     }
 
     /// (c_p^2, c_s^2) in m^2/s^2 along the smallest principal stretch, where c_p is the largest of all directions
@@ -235,6 +240,18 @@ mod suite {
                 }
                 let n = [angle.cos(), angle.sin()];
                 prop_assert_eq!(law.pressure_speed(f, n), law.speeds(f, n)[0]);
+            }
+        }
+
+        #[test]
+        fn moduli_are_the_eigenvalues_of_the_acoustic_tensor(f in deformation(), angle in 0.0..6.3f64) {
+            for law in laws() {
+                let n = [angle.cos(), angle.sin()];
+                let (closed, [b11, b12, b22]) = with_law!(&law, m => (m.moduli(f, n), m.acoustic(f, n)));
+                for (closed, expected) in closed.iter().zip(tensor::eigenvalues(b11, b12, b22)) {
+                    // Both in some 30 operations on numbers of the size of the larger one.
+                    prop_assert!((closed - expected).abs() < 1e-14 * closed.abs().max(b11 + b22), "{closed} {expected}");
+                }
             }
         }
 

@@ -97,6 +97,20 @@ impl Material for NeoHookean {
         [(two * h[0]).mul_add(g[0], a), h[0].mul_add(g[1], h[1] * g[0]), (two * h[1]).mul_add(g[1], a)]
     }
 
+    /// With f.g = J and h = -(2A/3J) f + s/2 g, s what g g^T counts, B = A 1 + h g^T + g h^T has the eigenvalues
+    /// A + h.g -+ |h||g|, where h.g = s/2 g.g - 2A/3 and |h|^2 |g|^2 = (h.g)^2 + (2A/3J f x g)^2.
+    #[inline(always)]
+    fn moduli<L: Lane>(&self, f: [L; 4], n: [L; 2]) -> [L; 2] {
+        let terms = self.terms(f);
+        let Terms { inverse, a, .. } = terms;
+        let (u, g) = (tensor::times(f, n), tensor::times(tensor::cofactor(f), n));
+        let third = L::splat(2.0 / 3.0) * a;
+        let along = (L::splat(0.5) * self.square(&terms)).mul_add(tensor::dot(g, g), -third);
+        let across = u[0].mul_add(g[1], -(u[1] * g[0])) * (third * inverse);
+        let (mean, radius) = (a + along, along.mul_add(along, across * across).sqrt());
+        [mean + radius, mean - radius]
+    }
+
     /// Along a principal direction of stretch l1, the other being l2, f and g are parallel, f.g = J and g.g = l2^2: B has
     /// the eigenvalues (kappa + 5 A I/(9 J^2)) l2^2 - A/3 and A. The fastest is that of the larger l2.
     #[inline(always)]

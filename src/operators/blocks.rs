@@ -46,6 +46,15 @@ pub struct Plan {
     pub special: bool,
 }
 
+/// A block whose fluxes can be found once the traces of all blocks up to `after` are there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ready {
+    /// The last of itself and its neighbours.
+    pub after: usize,
+    /// The block.
+    pub block: usize,
+}
+
 /// The blocks; the last one of a law is padded with its last cell.
 ///
 /// Which cells share a block is chosen by counting faces that are [`Side::Aligned`]. Far apart: the cells of a law, in
@@ -68,6 +77,8 @@ pub struct Blocks {
     pub plan: Vec<[Plan; 4]>,
     /// Other sides lane by lane; lanes at a boundary and padding see themselves.
     pub gathered: Vec<[Across; LANES]>,
+    /// All blocks in the order in which their neighbours are done, if blocks are done one by one.
+    pub sequence: Vec<Ready>,
 }
 
 impl Blocks {
@@ -88,6 +99,7 @@ impl Blocks {
             neighbours: vec![],
             plan: vec![],
             gathered: vec![],
+            sequence: vec![],
         };
         for law in 0..laws {
             let cells: Vec<usize> = (0..material.len()).filter(|&cell| material[cell] == law).collect();
@@ -106,7 +118,17 @@ impl Blocks {
             let plan = std::array::from_fn(|face| blocks.plan_of(block, face));
             blocks.plan.push(plan);
         }
+        blocks.sequence = (0..blocks.len()).map(|block| blocks.ready(block)).collect();
+        blocks.sequence.sort_by_key(|ready| (ready.after, ready.block));
         blocks
+    }
+
+    fn ready(&self, block: usize) -> Ready {
+        let neighbours = self.neighbours[block].iter().flatten().filter_map(|neighbour| match neighbour {
+            Neighbour::Cell(across) | Neighbour::Interface(across, _) => Some(across.face / 4),
+            Neighbour::Boundary(_) | Neighbour::Padding => None,
+        });
+        Ready { after: neighbours.fold(block, usize::max), block }
     }
 
     /// Number of faces that are read as they lie.
@@ -152,6 +174,7 @@ impl Blocks {
             + std::mem::size_of_val(&self.cells[..])
             + std::mem::size_of_val(&self.plan[..])
             + std::mem::size_of_val(&self.gathered[..])
+            + std::mem::size_of_val(&self.sequence[..])
     }
 
     fn neighbours_of(&self, block: usize, material: &[usize], links: &[[Link; 4]]) -> [[Neighbour; LANES]; 4] {

@@ -222,6 +222,42 @@ fn the_curl_free_complement_is_orthonormal_and_blind_to_gradients() {
 }
 
 #[test]
+fn plans_of_faces_read_what_the_neighbours_say_and_blocks_are_ready_when_these_are_done() {
+    let mesh = rectangle([1.0, 1.0], [13, 11]).unwrap();
+    let links = links(&mesh).unwrap();
+    let blocks = Blocks::new(&vec![0; mesh.cells.len()], &links);
+    let mut aligned = 0;
+    for block in 0..blocks.len() {
+        for face in 0..4 {
+            for (lane, neighbour) in blocks.neighbours[block][face].iter().enumerate() {
+                let across = match *neighbour {
+                    Neighbour::Cell(across) | Neighbour::Interface(across, _) => across,
+                    Neighbour::Boundary(_) | Neighbour::Padding => continue,
+                };
+                match blocks.plan[block][face].side {
+                    Side::Aligned(there) => assert_eq!((across.face, across.lane, across.flip), (there, lane, false)),
+                    Side::Gathered(entry) => assert_eq!(blocks.gathered[entry][lane], across),
+                }
+            }
+            aligned += usize::from(matches!(blocks.plan[block][face].side, Side::Aligned(_)));
+        }
+    }
+    // Far apart: of 18 blocks with 4 faces, the last one is padded, runs end at two, and a row is 13 of 18 blocks.
+    assert!(2 * aligned > 4 * blocks.len(), "{aligned} of {}", 4 * blocks.len());
+    let mut done: Vec<usize> = blocks.sequence.iter().map(|ready| ready.block).collect();
+    assert!(blocks.sequence.is_sorted_by_key(|ready| ready.after));
+    for ready in &blocks.sequence {
+        let last = blocks.neighbours[ready.block].iter().flatten().filter_map(|neighbour| match neighbour {
+            Neighbour::Cell(across) => Some(across.face / 4),
+            _ => None,
+        });
+        assert_eq!(ready.after, last.fold(ready.block, usize::max));
+    }
+    done.sort_unstable();
+    assert_eq!(done, (0..blocks.len()).collect::<Vec<_>>());
+}
+
+#[test]
 fn blocks_keep_every_cell_once_and_neighbours_point_back() {
     let mesh = distorted();
     let links = links(&mesh).unwrap();

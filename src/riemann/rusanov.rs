@@ -1,6 +1,6 @@
 //! Local Lax-Friedrichs (Rusanov) flux.
 
-use super::{Riemann, Trace, star};
+use super::{Riemann, Trace};
 use crate::lane::Lane;
 
 /// Flux* = mean of both sides - c/2 (U^+ - U^-), c the larger current c_p.
@@ -12,17 +12,19 @@ impl Riemann for Rusanov {
 
     #[inline(always)]
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6] {
-        let half = L::splat(0.5);
+        // Halves and signs stand in what is the same at all points of a face: fewer operations for each number.
+        let half = L::splat(-0.5);
+        let back = [half * n[0], half * n[1]];
         let c = half * minus.c[0].max(plus.c[0]);
         let jump = c * density;
-        let v = [half * (minus.v[0] + plus.v[0]), half * (minus.v[1] + plus.v[1])];
-        let t = [half * (minus.t[0] + plus.t[0]), half * (minus.t[1] + plus.t[1])];
-        let mut flux = star(v, t, n);
-        for (flux, (minus, plus)) in flux.iter_mut().zip(minus.f.iter().zip(&plus.f)) {
-            *flux = *flux - c * (*plus - *minus);
-        }
+        let mut flux = [L::zero(); 6];
         for i in 0..2 {
-            flux[4 + i] = flux[4 + i] - jump * (plus.v[i] - minus.v[i]);
+            let v = minus.v[i] + plus.v[i];
+            for a in 0..2 {
+                let k = 2 * i + a;
+                flux[k] = c.mul_add(plus.f[k] - minus.f[k], v * back[a]);
+            }
+            flux[4 + i] = jump.mul_add(plus.v[i] - minus.v[i], half * (minus.t[i] + plus.t[i]));
         }
         flux
     }

@@ -9,6 +9,7 @@ use crate::boundary::FacePoint;
 use crate::lane::{F8, LANES, Lanes, Work, gather_array, load_array, store_array};
 use crate::material::Law;
 use crate::mesh::map;
+use crate::operators::blocks::Across;
 use crate::operators::{Line, Neighbour, Side};
 use crate::riemann::{Riemann, Trace, interface};
 use crate::state::State;
@@ -116,17 +117,73 @@ fn turned<L: Lanes, const W: usize>(mut x: [L; W]) -> [L; W] {
     x
 }
 
-/// Numbers of a face for the kernel.
-struct Face<'a, const W: usize> {
+/// Traces that lie apart, lane by lane, in the order of the points of this side.
+#[inline(always)]
+fn collect<L: Lanes, const W: usize>(traces: &[F8], across: &[Across; LANES], out: &mut [[F8; W]]) {
+    let (m, stride) = (out.len(), (W * LANES) as isize);
+    let (mut at, mut step) = ([0; LANES], [stride; LANES]);
+    for lane in 0..LANES {
+        let there = &across[lane];
+        let first = if there.flip { m - 1 } else { 0 };
+        at[lane] = (there.face * m + first) * W * LANES + there.lane;
+        step[lane] = if there.flip { -stride } else { stride };
+    }
+    for out in out {
+        store_array(gather_array::<L, W>(traces, &at), out);
+        for lane in 0..LANES {
+            at[lane] = at[lane].wrapping_add_signed(step[lane]);
+        }
+    }
+}
+
+/// Both sides of a face of a block, with W numbers a trace, and its geometry.
+struct Face<'a, L, const W: usize> {
+    /// The face of the block, 0..4.
+    number: usize,
     /// Own traces, by point.
     own: &'a [[F8; W]],
-    /// Where the other side's are: by point, or lane by lane, then from `gathered`.
-    aligned: Option<&'a [[F8; W]]>,
-    /// First number of each lane at the first point, and what to add for the next one.
-    at: [usize; LANES],
-    step: [isize; LANES],
-    /// Whether a lane is at a boundary or at another material.
-    special: bool,
+    /// The other side's, by point, with its own normal.
+    other: &'a [[F8; W]],
+    /// Unit outward normal.
+    normal: [L; 2],
+    /// Length.
+    length: L,
+    /// Weights of the points.
+    weights: &'a [f64],
+}
+
+impl<L: Lanes, const W: usize> Face<'_, L, W> {
+    /// Trace of this side and of the other at a point.
+    #[inline(always)]
+    fn traces<R: Riemann>(&self, point: usize) -> [Trace<L>; 2] {
+        let (own, other) = (load_array::<L, W>(&self.own[point]), load_array::<L, W>(&self.other[point]));
+        [trace_of::<L, R, W>(&own), trace_of::<L, R, W>(&turned(other))]
+    }
+
+    /// w len.
+    #[inline(always)]
+    fn scale(&self, point: usize) -> L {
+        self.length * L::splat(self.weights[point])
+    }
+
+    /// len w (Flux* - own flux of the F rows), v that of this side.
+    #[inline(always)]
+    fn lifted(&self, point: usize, flux: [L; 6], v: [L; 2]) -> [L; 6] {
+        let (scale, mut out) = (self.scale(point), flux);
+        for k in 0..6 {
+            if k < 4 {
+                out[k] = v[k / 2].mul_add(self.normal[k % 2], out[k]);
+            }
+            out[k] = out[k] * scale;
+        }
+        out
+    }
+}
+
+/// Whether the flux of a lane is not that of two cells of one law.
+#[inline(always)]
+fn is_special(neighbour: &Neighbour) -> bool {
+    matches!(neighbour, Neighbour::Boundary(_) | Neighbour::Interface(..))
 }
 
 impl Block<'_> {
@@ -140,172 +197,121 @@ impl Block<'_> {
         }
     }
 
-    /// How to read a face.
-    #[inline(always)]
-    fn face<const W: usize>(&self, face: usize) -> Face<'_, W> {
-        let (blocks, m) = (&self.scheme.operators.blocks, self.scheme.operators.line.m);
-        let traces = self.traces.as_chunks::<W>().0;
-        let plan = blocks.plan[self.block][face];
-        let at = (4 * self.block + face) * m;
-        let mut out =
-            Face { own: &traces[at..at + m], aligned: None, at: [0; LANES], step: [0; LANES], special: plan.special };
-        let across = match plan.side {
-            Side::Aligned(there) => {
-                out.aligned = Some(&traces[there * m..there * m + m]);
-                return out;
-            }
-            Side::Gathered(entry) => blocks.gathered[entry],
-        };
-        let stride = (W * LANES) as isize;
-        for lane in 0..LANES {
-            let there = &across[lane];
-            let point = if there.flip { m - 1 } else { 0 };
-            out.at[lane] = (there.face * m + point) * W * LANES + there.lane;
-            out.step[lane] = if there.flip { -stride } else { stride };
-        }
-        out
-    }
-
-    /// Lifted numbers of all faces: len w_k (Flux* - own flux of the F rows), [face][component][point]. Traces have W
-    /// numbers.
+    /// Lifted numbers of all faces: len w_k (Flux* - own flux of the F rows), [face][component][point].
     #[inline(always)]
     fn fluxes<L: Lanes, R: Riemann, const W: usize>(&mut self, riemann: &R) {
         let operators = &self.scheme.operators;
         let m = operators.line.m;
+        let weights = &operators.line.basis.weights[..m];
         let metric = Metric::of(&operators.geometry, self.block, operators.nodes());
         let density = L::splat(self.scheme.laws[operators.blocks.material[self.block]].density());
+        let traces = self.traces.as_chunks::<W>().0;
         // Moved out while the faces are looked at.
-        let (mut lift, mut sums) = (std::mem::take(&mut self.scratch.nodes.lift), self.sums.take());
-        let metered = sums.is_some();
-        for face in 0..4 {
-            let normal = load_array::<L, 2>(&metric.normal[2 * face..2 * face + 2]);
-            let length = L::load(&metric.length[face]);
-            let out = &mut lift[face * 6 * m..(face + 1) * 6 * m];
-            let Face { own: numbers, aligned, mut at, step, special } = self.face::<W>(face);
-            for (point, &weight) in operators.line.basis.weights[..m].iter().enumerate() {
-                let own = load_array::<L, W>(&numbers[point]);
-                let other = match aligned {
-                    Some(there) => load_array::<L, W>(&there[point]),
-                    None => {
-                        let numbers = gather_array::<L, W>(self.traces, &at);
-                        for lane in 0..LANES {
-                            at[lane] = at[lane].wrapping_add_signed(step[lane]);
-                        }
-                        numbers
-                    }
-                };
-                let mut other = turned(other);
-                let minus = trace_of::<L, R, W>(&own);
-                let mut flux = riemann.flux(&minus, &trace_of::<L, R, W>(&other), normal, density);
-                let scale = length * L::splat(weight);
-                if special {
-                    if metered {
-                        other = self.without_jumps::<L, W>(face, own, other);
-                    }
-                    flux = self.patched::<L, R, W>(face, point, other, flux);
+        let nodes = &mut self.scratch.nodes;
+        let (mut lift, mut across) = (std::mem::take(&mut nodes.lift), std::mem::take(&mut nodes.across));
+        let mut sums = self.sums.take();
+        for number in 0..4 {
+            let plan = operators.blocks.plan[self.block][number];
+            let other = match plan.side {
+                Side::Aligned(there) => &traces[there * m..there * m + m],
+                Side::Gathered(entry) => {
+                    let out = &mut across.as_chunks_mut::<W>().0[..m];
+                    collect::<L, W>(self.traces, &operators.blocks.gathered[entry], out);
+                    out
                 }
-                if W >= width(false, true) {
-                    self.meter::<L, W>((face, point), (other, flux), (scale, normal), &mut sums);
-                }
+            };
+            let at = (4 * self.block + number) * m;
+            let normal = load_array::<L, 2>(&metric.normal[2 * number..2 * number + 2]);
+            let length = L::load(&metric.length[number]);
+            let face = Face { number, own: &traces[at..at + m], other, normal, length, weights };
+            let out = &mut lift[number * 6 * m..(number + 1) * 6 * m];
+            for point in 0..m {
+                let [minus, plus] = face.traces::<R>(point);
+                let lifted = face.lifted(point, riemann.flux(&minus, &plus, normal, density), minus.v);
                 for k in 0..6 {
-                    let mut lifted = flux[k];
-                    if k < 4 {
-                        lifted = minus.v[k / 2].mul_add(normal[k % 2], lifted);
-                    }
-                    (lifted * scale).store(&mut out[k * m + point]);
+                    lifted[k].store(&mut out[k * m + point]);
                 }
             }
-        }
-        (self.scratch.nodes.lift, self.sums) = (lift, sums);
-    }
-
-    /// The other side's numbers, with the own ones in lanes at a boundary: these have no jumps for the balance.
-    #[inline(always)]
-    fn without_jumps<L: Lanes, const W: usize>(&self, face: usize, own: [L; W], other: [L; W]) -> [L; W] {
-        let (mut here, mut there) = ([F8::ZERO; W], [F8::ZERO; W]);
-        store_array(own, &mut here);
-        store_array(other, &mut there);
-        for (lane, neighbour) in self.scheme.operators.blocks.neighbours[self.block][face].iter().enumerate() {
-            if matches!(neighbour, Neighbour::Boundary(_)) {
-                (0..W).for_each(|k| there[k].0[lane] = here[k].0[lane]);
+            if plan.special {
+                self.put_right::<L, R, W>(&face, out);
+            }
+            if let (true, Some(sums)) = (W >= width(false, true), &mut sums) {
+                self.meter::<L, R, W>(riemann, &face, density, sums);
             }
         }
-        load_array::<L, W>(&there)
+        (self.scratch.nodes.lift, self.scratch.nodes.across, self.sums) = (lift, across, sums);
     }
 
-    /// The own numbers of a face point.
+    /// The lifted numbers of lanes at a boundary or at another material, in `out`, [component][point].
     #[inline(always)]
-    fn own(&self, face: usize, point: usize, w: usize) -> &[F8] {
-        let at = ((4 * self.block + face) * self.scheme.operators.line.m + point) * w;
-        &self.traces[at..at + w]
-    }
-
-    /// The flux with lanes at a boundary or at another material put right.
-    #[inline(always)]
-    fn patched<L: Lanes, R: Riemann, const W: usize>(
-        &self,
-        face: usize,
-        point: usize,
-        other: [L; W],
-        flux: [L; 6],
-    ) -> [L; 6] {
-        let (mut there, mut stored) = ([F8::ZERO; W], [F8::ZERO; 6]);
-        store_array(other, &mut there);
-        store_array(flux, &mut stored);
-        self.special(face, point, [self.own(face, point, W), &there], R::SHEAR, &mut stored);
-        load_array::<L, 6>(&stored)
-    }
-
-    /// What a face point adds to the balance of the block; `scale` is w len.
-    #[inline(always)]
-    fn meter<L: Lanes, const W: usize>(
-        &self,
-        (face, point): (usize, usize),
-        (other, flux): ([L; W], [L; 6]),
-        (scale, normal): (L, [L; 2]),
-        sums: &mut Option<&mut Sums>,
-    ) {
-        let Some(sums) = sums else { return };
-        let (mut weight, mut there, mut stored) = (F8::ZERO, [F8::ZERO; W], [F8::ZERO; 6]);
-        (scale * L::splat(self.stage.dt * self.scheme.weight(self.stage.number))).store(&mut weight);
-        store_array(other, &mut there);
-        store_array(flux, &mut stored);
-        let power = FacePower { minus: self.own(face, point, W), plus: &there, flux: &stored };
-        power.jumps::<L, W>(&weight, normal, &mut sums.flux_dissipation);
-        let operators = &self.scheme.operators;
-        for (lane, neighbour) in operators.blocks.neighbours[self.block][face].iter().enumerate() {
-            if matches!(neighbour, Neighbour::Boundary(_)) {
-                let at = (self.block * 4 + face) * 2;
-                let normal = [operators.geometry.normal[at].0[lane], operators.geometry.normal[at + 1].0[lane]];
-                power.boundary(&weight, normal, lane, sums);
+    fn put_right<L: Lanes, R: Riemann, const W: usize>(&self, face: &Face<L, W>, out: &mut [F8]) {
+        let neighbours = &self.scheme.operators.blocks.neighbours[self.block][face.number];
+        let m = face.weights.len();
+        for point in 0..m {
+            let mut flux = [F8::ZERO; 6];
+            self.special(face.number, point, [&face.own[point], &face.other[point]], R::SHEAR, &mut flux);
+            let v = load_array::<L, 2>(&face.own[point][4..6]);
+            let mut lifted = [F8::ZERO; 6];
+            store_array(face.lifted(point, load_array::<L, 6>(&flux), v), &mut lifted);
+            for (lane, _) in neighbours.iter().enumerate().filter(|(_, neighbour)| is_special(neighbour)) {
+                (0..6).for_each(|k| out[k * m + point].0[lane] = lifted[k].0[lane]);
             }
         }
     }
 
-    /// Lanes at a boundary or at another material: their fluxes, one by one, from the numbers of both sides.
+    /// What a face adds to the balance of the block. The fluxes are found once more: without the balance they never come
+    /// to memory.
+    #[inline(always)]
+    fn meter<L: Lanes, R: Riemann, const W: usize>(&self, riemann: &R, face: &Face<L, W>, density: L, sums: &mut Sums) {
+        let neighbours = &self.scheme.operators.blocks.neighbours[self.block][face.number];
+        let factor = self.stage.dt * self.scheme.weight(self.stage.number);
+        let mut normal = [F8::ZERO; 2];
+        store_array(face.normal, &mut normal);
+        for point in 0..face.weights.len() {
+            let [minus, plus] = face.traces::<R>(point);
+            let (mut flux, mut there, mut weight) = ([F8::ZERO; 6], [F8::ZERO; W], F8::ZERO);
+            store_array(riemann.flux(&minus, &plus, face.normal, density), &mut flux);
+            store_array(turned(load_array::<L, W>(&face.other[point])), &mut there);
+            (face.scale(point) * L::splat(factor)).store(&mut weight);
+            let own = &face.own[point];
+            self.special(face.number, point, [own, &face.other[point]], R::SHEAR, &mut flux);
+            for (lane, neighbour) in neighbours.iter().enumerate() {
+                if matches!(neighbour, Neighbour::Boundary(_)) {
+                    // Lanes at a boundary see themselves: they have no jumps.
+                    (0..W).for_each(|k| there[k].0[lane] = own[k].0[lane]);
+                    let power = FacePower { minus: own, plus: own, flux: &flux };
+                    power.boundary(&weight, [normal[0].0[lane], normal[1].0[lane]], lane, sums);
+                }
+            }
+            let power = FacePower { minus: own, plus: &there, flux: &flux };
+            power.jumps::<L, W>(&weight, face.normal, &mut sums.flux_dissipation);
+        }
+    }
+
+    /// Lanes at a boundary or at another material: their fluxes, one by one, from the numbers of both sides, each with
+    /// its own normal.
     fn special(&self, face: usize, point: usize, sides: [&[F8]; 2], shear: bool, flux: &mut [F8; 6]) {
         let blocks = &self.scheme.operators.blocks;
         let law = &self.scheme.laws[blocks.material[self.block]];
         for (lane, neighbour) in blocks.neighbours[self.block][face].iter().enumerate() {
-            let group = match *neighbour {
-                Neighbour::Boundary(group) => Some(group),
-                Neighbour::Interface(..) => None,
-                Neighbour::Cell(_) | Neighbour::Padding => continue,
-            };
+            if !is_special(neighbour) {
+                continue;
+            }
             let at = self.face_point(face, point, lane, law.density());
             let trace = |side: usize, law: &Law| {
                 let x = |k: usize| sides[side][k].0[lane];
                 let f = [x(0), x(1), x(2), x(3)];
                 let c = if shear { [x(8), x(9)] } else { law.speeds(f, at.normal) };
-                Trace { f, v: [x(4), x(5)], t: [x(6), x(7)], c }
+                let sign = if side == 0 { 1.0 } else { -1.0 };
+                Trace { f, v: [x(4), x(5)], t: [sign * x(6), sign * x(7)], c }
             };
-            let result = match (group, *neighbour) {
-                (Some(group), _) => self.scheme.boundaries[group].flux(&trace(0, law), &at, self.stage.times),
-                (None, Neighbour::Interface(_, material)) => {
+            let result = match *neighbour {
+                Neighbour::Boundary(group) => self.scheme.boundaries[group].flux(&trace(0, law), &at, self.stage.times),
+                Neighbour::Interface(_, material) => {
                     let other = &self.scheme.laws[material];
                     interface(&trace(0, law), &trace(1, other), at.normal, [law.density(), other.density()])
                 }
-                _ => continue,
+                Neighbour::Cell(_) | Neighbour::Padding => continue,
             };
             (0..6).for_each(|k| flux[k].0[lane] = result[k]);
         }

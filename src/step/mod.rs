@@ -184,20 +184,65 @@ impl Scheme {
                 times.iter_mut().zip(time.tau.iter().zip(&time.weights)).for_each(|(t, n)| *t = node(n));
                 let times = &times[..time.len()];
                 let stage = Stage { number: 0, times, dt };
-                self.begin(&stage, state, work);
-                self.finish(&stage, state, survey, work);
+                self.stage(&stage, state, survey, work);
             }
             Method::RungeKutta(tableau) => {
                 for number in 0..tableau.stages() {
                     let times = [TimeNode { time: state.time + tableau.c[number] * dt, weight: 1.0 }];
                     let stage = Stage { number, times: &times, dt };
-                    self.begin(&stage, state, work);
-                    self.finish(&stage, state, survey, work);
+                    self.stage(&stage, state, survey, work);
                 }
             }
         }
         work.next.time = state.time + dt;
         work.next.step = state.step + 1;
+    }
+
+    /// `begin` and `finish` of every block; the bits do not depend on the order.
+    fn stage(&self, stage: &Stage, state: &State, survey: &Survey, work: &mut Work) {
+        if rayon::current_num_threads() == 1 {
+            self.pipelined(stage, state, survey, work);
+        } else {
+            self.begin(stage, state, work);
+            self.finish(stage, state, survey, work);
+        }
+    }
+
+    /// One thread: `finish` follows `begin` as closely as neighbours allow, while traces and rates are still in the cache.
+    fn pipelined(&self, stage: &Stage, state: &State, survey: &Survey, work: &mut Work) {
+        let blocks = &self.operators.blocks;
+        let (stride, width) = (state.components * self.operators.nodes(), work.traces.len() / blocks.len().max(1));
+        let (before, now) = work.rates.split_at_mut(stage.number);
+        let (before, rates, next) = (&*before, &mut now[0], &mut work.next.u);
+        let (traces, balance) = (&mut work.traces, &mut work.balance);
+        let mut sequence = blocks.sequence.iter().copied().peekable();
+        with_scratch(&work.scratch, |scratch| {
+            for block in 0..blocks.len() {
+                let rate = &mut rates[block * stride..(block + 1) * stride];
+                let sums = balance.as_mut().map(|sums| &mut sums[block]);
+                let traces_of = &mut traces[block * width..(block + 1) * width];
+                let scratch = &mut *scratch;
+                begin::Block { scheme: self, stage, block, state, before, rate, traces: traces_of, sums, scratch }
+                    .run();
+                while let Some(ready) = sequence.next_if(|ready| ready.after <= block) {
+                    let at = ready.block * stride..(ready.block + 1) * stride;
+                    let block = finish::Block {
+                        scheme: self,
+                        stage,
+                        block: ready.block,
+                        state,
+                        survey,
+                        before,
+                        rate: &mut rates[at.clone()],
+                        traces,
+                        next: &mut next[at],
+                        sums: balance.as_mut().map(|sums| &mut sums[ready.block]),
+                        scratch: &mut *scratch,
+                    };
+                    block.run();
+                }
+            }
+        });
     }
 
     /// Volume term and traces of every block.

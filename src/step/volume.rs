@@ -52,6 +52,8 @@ pub struct Arrays {
     pub source: Vec<F8>,
     /// Lifted numbers: [face][component][face point].
     pub lift: Vec<F8>,
+    /// Traces across a face whose lanes lie apart.
+    pub across: Vec<F8>,
     /// Rows of F in the weighted inner product, and their coefficients, for the curl-free projection.
     pub weighted: Vec<F8>,
     /// Coefficients of the complement, [row][column].
@@ -70,6 +72,7 @@ impl Arrays {
             contravariant: zeros(4 * n),
             source: zeros(2 * n),
             lift: zeros(4 * 6 * m),
+            across: zeros(m * width(true, true)),
             weighted: zeros(4 * n),
             coefficients: zeros(4 * n),
         }
