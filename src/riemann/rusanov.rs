@@ -20,10 +20,8 @@ impl Riemann for Rusanov {
         let mut flux = [L::zero(); 6];
         for i in 0..2 {
             let v = minus.v[i] + plus.v[i];
-            for a in 0..2 {
-                let k = 2 * i + a;
-                flux[k] = c.mul_add(plus.f[k] - minus.f[k], v * back[a]);
-            }
+            flux[2 * i] = c.mul_add(plus.f[2 * i] - minus.f[2 * i], v * back[0]);
+            flux[2 * i + 1] = c.mul_add(plus.f[2 * i + 1] - minus.f[2 * i + 1], v * back[1]);
             flux[4 + i] = jump.mul_add(plus.v[i] - minus.v[i], half * (minus.t[i] + plus.t[i]));
         }
         flux

@@ -196,8 +196,8 @@ fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, u: &[F8]) -> Found 
     let mut poison = [L::zero(); 4];
     for p in 0..points.count {
         let mut f = [L::zero(); 4];
-        for k in 0..4 {
-            f[k] = L::load(&points.f[points.point * p + points.component * k]);
+        for (k, f) in f.iter_mut().enumerate() {
+            *f = L::load(&points.f[points.point * p + points.component * k]);
         }
         let squares = law.largest_squares(f);
         fastest = fastest.max(squares[0]);
