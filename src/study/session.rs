@@ -78,7 +78,8 @@ impl Session<'_> {
         let mut predicted = None;
         self.say(title());
         for (level, refinement) in self.plan.refinements.clone().into_iter().enumerate() {
-            if level == 1 {
+            // Two meshes tell what a step costs whatever its size; one alone is all there is before the second of two.
+            if level > 0 && level == (self.plan.refinements.len() - 1).min(2) {
                 let spent = start.elapsed().as_secs_f64();
                 let whole = spent + self.rest(level, spent);
                 self.say(format!("  the whole study will take about {}", seconds(whole)));
@@ -99,13 +100,14 @@ impl Session<'_> {
     fn rest(&self, level: usize, spent: f64) -> f64 {
         let times = |cpu: f64| if cpu < SHORT { cpu * self.study.repeat as f64 } else { cpu };
         let beside = (spent - self.study.records.iter().map(|r| times(r.cpu)).sum::<f64>()).max(0.0);
-        let first = self.plan.refinements[0];
+        let (done, rest) = self.plan.refinements.split_at(level);
+        let area: f64 = done.iter().map(|r| r * r).sum();
         let of = |refinement: f64| -> f64 {
             let case = |series: &Series| Case { series: series.clone(), refinement };
             let cpu = |series| self.study.model(series).map_or(0.0, |m| m.at(self.study.size(&case(series))).cpu);
-            self.plan.series.iter().map(|s| times(cpu(s))).sum::<f64>() + beside * (refinement / first).powi(2)
+            self.plan.series.iter().map(|s| times(cpu(s))).sum::<f64>() + beside * refinement * refinement / area
         };
-        self.plan.refinements[level..].iter().map(|r| of(*r)).sum()
+        rest.iter().map(|r| of(*r)).sum()
     }
 
     /// Calibrates, then chooses, predicts and runs until the aim is met.
