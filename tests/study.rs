@@ -140,12 +140,18 @@ fn bad_options_are_refused_and_results_kept() {
         ("--refine 0", "above 0"),
         ("--reference 9,1", "DEGREE,REFINEMENT"),
         ("--error -1", "above 0"),
+        ("--error 1e-15", "rounding"),
         ("--degrees 8", "6"),
     ] {
         let (code, message) = study(&scene, folder.path(), options).unwrap_err();
         assert!(code == 2 && message.contains(word), "{options}: {code} {message}");
     }
     assert!(!folder.path().join("study.csv").exists());
+    // What would take more cells than any memory holds is found after the calibration, whose table stays.
+    let far = "--error 1e-13 --degrees 1 --methods rk-dgfem --refine 0.125,0.25";
+    let (code, message) = study(&scene, folder.path(), far).unwrap_err();
+    assert!(code == 2 && message.contains("no setting"), "{message}");
+    assert_eq!(column(folder.path(), "method").len(), 2);
     std::fs::write(folder.path().join("study.csv"), "mine").unwrap();
     let (code, message) = study(&scene, folder.path(), "--degrees 1").unwrap_err();
     assert!(code == 2 && message.contains("--force"), "{message}");

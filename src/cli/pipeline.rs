@@ -38,6 +38,7 @@ impl Files {
         let Some(path) = &self.mesh else { return scene.build_mesh() };
         let mesh = build::read_mesh(path)?;
         scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
+        scene.check_exact_materials(&mesh)?;
         Ok(mesh)
     }
 

@@ -9,6 +9,9 @@ use crate::study::{Aim, Case, Plan, Reference, Series, Session, Study, machine, 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+/// The smallest error that a study looks for: double precision over thousands of steps.
+const ROUNDING: f64 = 1e-13;
+
 /// Arguments.
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -83,6 +86,10 @@ impl Args {
         let aim = match (self.error, self.seconds) {
             (Some(x), _) | (_, Some(x)) if !(x.is_finite() && x > 0.0) => {
                 return Err(Error::input(format!("--error or --seconds is {x}"), "give a number above 0"));
+            }
+            (Some(error), _) if error < ROUNDING => {
+                let what = format!("--error is {error:e}, below what rounding leaves of any run");
+                return Err(Error::input(what, format!("give {ROUNDING:e} or more")));
             }
             (Some(error), _) => Some(Aim::Error(error)),
             (_, seconds) => seconds.map(Aim::Seconds),

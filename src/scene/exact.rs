@@ -149,7 +149,10 @@ impl Scene {
     }
 
     /// Whether the materials stand in the mesh where the exact solution has them: the first `[[material]]` is its first.
-    pub(super) fn check_exact_materials(&self, mesh: &Mesh) -> Result<()> {
+    ///
+    /// # Errors
+    /// The first cell that is of another material.
+    pub fn check_exact_materials(&self, mesh: &Mesh) -> Result<()> {
         let solution = if self.materials.len() > 1 { self.build_exact() } else { None };
         let Some(solution) = solution else { return Ok(()) };
         for (cell, material) in self.material_of_cells(mesh).into_iter().enumerate() {

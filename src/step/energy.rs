@@ -15,7 +15,8 @@ pub struct Totals {
     pub strain: f64,
     /// int p dX, kg/s (per metre of thickness).
     pub momentum: [f64; 2],
-    /// int (x_1 p_2 - x_2 p_1) dX with x = X + u, kg m/s (per metre of thickness), about the origin; only where the displacement is known.
+    /// int (x_1 p_2 - x_2 p_1) dX with x = X + u, kg m/s (per metre of thickness), about the origin; only where the
+    /// displacement is known.
     pub angular_momentum: Option<f64>,
     /// int F dX, m^2.
     pub deformation: [f64; 4],

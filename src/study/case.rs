@@ -81,8 +81,9 @@ impl Case {
     /// Number of cells, of which the mesh of the scene has `of_scene`.
     pub(super) fn cells(&self, scene: &Scene, of_scene: usize) -> usize {
         match scene.mesh {
-            scene::Mesh::Rectangle { cells, .. } => self.rectangle(cells).iter().product(),
-            scene::Mesh::File(_) => of_scene * self.parts() * self.parts(),
+            // Saturating: a search for a mesh may ask for sizes that no machine holds.
+            scene::Mesh::Rectangle { cells, .. } => self.rectangle(cells).into_iter().fold(1, usize::saturating_mul),
+            scene::Mesh::File(_) => of_scene.saturating_mul(self.parts()).saturating_mul(self.parts()),
         }
     }
 

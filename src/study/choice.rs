@@ -3,6 +3,7 @@
 use super::Study;
 use super::case::{Case, Series};
 use super::predict::Prediction;
+use crate::lane::LANES;
 use crate::scene;
 
 /// What a user asks for.
@@ -18,6 +19,8 @@ pub enum Aim {
 const SHARE: f64 = 0.85;
 /// Cells per direction over those of the finest mesh of a series that its model is trusted for.
 const REACH: f64 = 2.0;
+/// Cells of the largest mesh that is thought of: with some kB a cell, tens of GB.
+const MOST: f64 = 1e7;
 
 impl Aim {
     /// Whether a result meets it.
@@ -77,7 +80,8 @@ fn candidate(study: &Study, series: &Series, aim: Aim) -> Option<Choice> {
         }
     };
     let (prediction, case) = expect(refinement);
-    let fits = matches!(aim, Aim::Error(_)) || prediction.cpu <= aim.seconds();
+    // A mesh beyond what memory holds meets nothing.
+    let fits = prediction.cpu <= aim.seconds() && study.size(&case).blocks * LANES as f64 <= MOST;
     fits.then(|| Choice { calibrated: refinement <= REACH * model.reach(), case, prediction })
 }
 

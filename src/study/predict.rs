@@ -62,7 +62,7 @@ impl Model {
         let rates: Vec<f64> = levels.windows(2).map(|pair| rate(&pair[0], &pair[1])).collect();
         // A rate that still rises goes on rising, but not beyond the order of the method. Of two levels that see a smooth
         // solution (the L2 rate at a shock is 1/2) the next rate lies half-way to that order: measured on the simple wave
-        // and the box, S1 to S4, where the error is then met within 15 %, and missed by up to 3 with the last rate.
+        // and the box, S1 to S4, where the error is then met within 15 %, and missed by up to 2.2 with the last rate.
         let rate = match rates[..] {
             [] => full,
             [only] if only > SMOOTH => 0.5 * (only + full.max(only)),

@@ -78,7 +78,8 @@ impl Session<'_> {
         let mut predicted = None;
         self.say(title());
         for (level, refinement) in self.plan.refinements.clone().into_iter().enumerate() {
-            if level == 1 {
+            // Two meshes tell what a step costs whatever its size; one alone is all there is before the second of two.
+            if level > 0 && level == (self.plan.refinements.len() - 1).min(2) {
                 let spent = start.elapsed().as_secs_f64();
                 let whole = spent + self.rest(level, spent);
                 self.say(format!("  the whole study will take about {}", seconds(whole)));
@@ -99,13 +100,14 @@ impl Session<'_> {
     fn rest(&self, level: usize, spent: f64) -> f64 {
         let times = |cpu: f64| if cpu < SHORT { cpu * self.study.repeat as f64 } else { cpu };
         let beside = (spent - self.study.records.iter().map(|r| times(r.cpu)).sum::<f64>()).max(0.0);
-        let first = self.plan.refinements[0];
+        let (done, rest) = self.plan.refinements.split_at(level);
+        let area: f64 = done.iter().map(|r| r * r).sum();
         let of = |refinement: f64| -> f64 {
             let case = |series: &Series| Case { series: series.clone(), refinement };
             let cpu = |series| self.study.model(series).map_or(0.0, |m| m.at(self.study.size(&case(series))).cpu);
-            self.plan.series.iter().map(|s| times(cpu(s))).sum::<f64>() + beside * (refinement / first).powi(2)
+            self.plan.series.iter().map(|s| times(cpu(s))).sum::<f64>() + beside * refinement * refinement / area
         };
-        self.plan.refinements[level..].iter().map(|r| of(*r)).sum()
+        rest.iter().map(|r| of(*r)).sum()
     }
 
     /// Calibrates, then chooses, predicts and runs until the aim is met.
@@ -135,9 +137,9 @@ impl Session<'_> {
                 self.say(format!("run it by: dgmpm run {} {}", self.study.scene.path().display(), sets.join(" ")));
                 return Ok(tries);
             }
-            self.say("not met: once more with what this run has shown");
+            self.say("not met");
         }
-        self.say(format!("the aim was not met in {TRIES} tries"));
+        self.say(format!("the aim was not met in {TRIES} tries, each with what the last had shown"));
         Ok(tries)
     }
 
@@ -168,17 +170,30 @@ impl Session<'_> {
     fn choice(&mut self, aim: Aim) -> Result<Choice> {
         for _ in 0..BETWEEN {
             let ranked = ranked(&self.study, &self.plan.series, aim);
-            let far = ranked.iter().take(RIVALS).find(|choice| !choice.calibrated).cloned();
-            let Some(far) = far else { break };
-            let reach = self.study.model(&far.case.series).map_or(1.0, |model| model.reach());
-            let between = (reach * far.case.refinement).sqrt().min(2.0 * reach);
-            let refinement = if self.study.scene.mesh_path().is_some() { between.ceil() } else { between };
-            self.measure(Case { refinement, ..far.case })?;
+            let Some(best) = ranked.first().map(|choice| choice.prediction.cpu) else { break };
+            // Not worth it where looking closer costs more than the best is expected to.
+            let step = |choice: &Choice| {
+                let (case, cpu) = self.between(choice);
+                (!choice.calibrated && cpu <= best).then_some(case)
+            };
+            let Some(case) = ranked.iter().take(RIVALS).find_map(step) else { break };
+            self.measure(case)?;
         }
         ranked(&self.study, &self.plan.series, aim)
             .into_iter()
             .next()
             .ok_or_else(|| Error::input("no setting of the study can meet this", "allow more, or other --degrees"))
+    }
+
+    /// A mesh on the way to a choice, at most twice as fine as what its series was measured on, and its CPU seconds.
+    fn between(&self, choice: &Choice) -> (Case, f64) {
+        let model = self.study.model(&choice.case.series);
+        let reach = model.as_ref().map_or(1.0, |model| model.reach());
+        let between = (reach * choice.case.refinement).sqrt().min(2.0 * reach);
+        let refinement = if self.study.scene.mesh_path().is_some() { between.ceil() } else { between };
+        let case = Case { refinement, series: choice.case.series.clone() };
+        let cpu = model.map_or(0.0, |model| model.at(self.study.size(&case)).cpu);
+        (case, cpu)
     }
 
     /// Runs a choice, prediction beside result.
