@@ -103,24 +103,39 @@ pub fn load_array<L: Lanes, const K: usize>(from: &[F8]) -> [L; K] {
     out
 }
 
-/// K numbers of each lane from a place of its own: the first of lane l is number `at[l]` of [`as_f64`], the others follow
-/// as in a store of [`F8`].
+/// Runs of K numbers, for each lane from places of its own: number k of run i of lane l is number
+/// `first[l] + i step[l] + LANES k` of [`as_f64`].
+///
+/// # Panics
+/// Where a lane would read beyond the end.
 #[inline(always)]
-pub fn gather_array<L: Lanes, const K: usize>(from: &[F8], at: &[usize; LANES]) -> [L; K] {
+pub fn gather_run<L: Lanes, const K: usize>(
+    from: &[F8],
+    first: &[usize; LANES],
+    step: &[isize; LANES],
+    out: &mut [[F8; K]],
+) {
     let numbers = as_f64(from);
-    for first in at {
-        assert!(first + (K - 1) * LANES < numbers.len(), "a lane beyond the end");
+    let (reach, more) = ((K - 1) * LANES, out.len().saturating_sub(1) as isize);
+    let mut at = [numbers.as_ptr(); LANES];
+    for lane in 0..LANES {
+        let last = first[lane].wrapping_add_signed(more * step[lane]);
+        assert!(first[lane].max(last) < numbers.len().saturating_sub(reach), "a lane beyond the end");
+        at[lane] = numbers.as_ptr().wrapping_add(first[lane]);
     }
-    let mut out = [L::zero(); K];
-    for (k, out) in out.iter_mut().enumerate() {
-        let mut lanes = [0.0; LANES];
-        for lane in 0..LANES {
-            // SAFETY: k <= K - 1, and the last number of each lane was seen to be there.
-            lanes[lane] = unsafe { *numbers.get_unchecked(at[lane] + k * LANES) };
+    for out in out {
+        for (k, out) in out.iter_mut().enumerate() {
+            let mut lanes = [0.0; LANES];
+            for lane in 0..LANES {
+                // SAFETY: runs lie between the first and the last, and both ends of each were seen to be there.
+                lanes[lane] = unsafe { *at[lane].add(k * LANES) };
+            }
+            L::from_lanes(lanes).store(out);
         }
-        *out = L::from_lanes(lanes);
+        for lane in 0..LANES {
+            at[lane] = at[lane].wrapping_offset(step[lane]);
+        }
     }
-    out
 }
 
 /// A clock for the shortest of phases, in units of its own (the processor's time stamp; nanoseconds where there is none).

@@ -6,7 +6,7 @@ use crate::lane::Lane;
 /// W = lambda/2 (tr eps)^2 + mu eps:eps, eps = (F + F^T)/2 - 1, eps33 = 0.
 ///
 /// For exact solutions and for equalities that hold for a linear law only. It is not objective: a rotation strains it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinearElastic {
     lambda: f64,
     mu: f64,

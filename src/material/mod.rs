@@ -14,7 +14,9 @@ use crate::tensor;
 /// A hyperelastic (or, with internal variables, inelastic) law in plane strain.
 ///
 /// Written once for all lanes. J <= 0 gives garbage, not an error: the step tests min J.
-pub trait Material {
+///
+/// `Copy`: kernels work on a copy of their own, so that the compiler knows its constants to stay as they are.
+pub trait Material: Copy {
     /// Names of the internal variables of a point; an elastic law has none, stores none, writes none.
     const INTERNAL: &'static [&'static str];
 

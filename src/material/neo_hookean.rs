@@ -7,7 +7,7 @@ use crate::tensor;
 /// W = kappa/2 (J - 1)^2 + mu/2 (J^(-2/3) I - 3), I = F:F + 1 (the 1 is F33^2).
 ///
 /// W stays finite as J -> 0: the law does not stop inversion, the program must.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NeoHookean {
     kappa: f64,
     mu: f64,
@@ -19,6 +19,7 @@ struct Terms<L> {
     j: L,
     /// 1/J = (J^(-1/3))^3: saves a division.
     inverse: L,
+    /// I = F:F + 1.
     invariant: L,
     a: L,
     b: L,
@@ -99,15 +100,25 @@ impl Material for NeoHookean {
 
     /// With f.g = J and h = -(2A/3J) f + s/2 g, s what g g^T counts, B = A 1 + h g^T + g h^T has the eigenvalues
     /// A + h.g -+ |h||g|, where h.g = s/2 g.g - 2A/3 and |h|^2 |g|^2 = (h.g)^2 + (2A/3J f x g)^2.
+    ///
+    /// In the plane g.g = F:F - f.f, and (f x g)^2 = f.f g.g - J^2 (Lagrange).
     #[inline(always)]
     fn moduli<L: Lane>(&self, f: [L; 4], n: [L; 2]) -> [L; 2] {
-        let terms = self.terms(f);
-        let Terms { inverse, a, .. } = terms;
-        let (u, g) = (tensor::times(f, n), tensor::times(tensor::cofactor(f), n));
-        let third = L::splat(2.0 / 3.0) * a;
-        let along = (L::splat(0.5) * self.square(&terms)).mul_add(tensor::dot(g, g), -third);
-        let across = u[0].mul_add(g[1], -(u[1] * g[0])) * (third * inverse);
-        let (mean, radius) = (a + along, along.mul_add(along, across * across).sqrt());
+        let root = tensor::det(f).inverse_cube_root();
+        let root2 = root * root;
+        let inverse2 = root2 * (root2 * root2);
+        let squares = f[0].mul_add(f[0], f[1] * f[1]) + f[2].mul_add(f[2], f[3] * f[3]);
+        let u = tensor::times(f, n);
+        let ff = tensor::dot(u, u);
+        let gg = squares - ff;
+        let third = root2 * L::splat(self.mu / 3.0);
+        // s/2 g.g, with A = 3 `third`.
+        let square = (third * (squares + L::splat(1.0))) * inverse2;
+        let half = square.mul_add(L::splat(5.0 / 6.0), L::splat(0.5 * self.kappa)) * gg;
+        let two_thirds = third + third;
+        let along = half - two_thirds;
+        let across2 = (two_thirds * two_thirds) * (ff * inverse2).mul_add(gg, L::splat(-1.0));
+        let (mean, radius) = (half + third, along.mul_add(along, across2).sqrt());
         [mean + radius, mean - radius]
     }
 

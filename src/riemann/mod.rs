@@ -33,6 +33,22 @@ pub trait Riemann {
 
     /// Flux*.N in the order of U: [F11, F12, F21, F22, p1, p2]; `density` is rho0 of both sides.
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6];
+
+    /// scale (Flux*.N - own flux of the F rows), the own flux being -v^- (x) N: what is lifted (14) where the rows of F
+    /// stand in strong form. Without a jump it is 0 there, exactly.
+    #[inline(always)]
+    fn lifted<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L, scale: L) -> [L; 6] {
+        let mut out = self.flux(minus, plus, n, density);
+        for i in 0..2 {
+            for k in 0..2 {
+                out[2 * i + k] = minus.v[i].mul_add(n[k], out[2 * i + k]);
+            }
+        }
+        for out in &mut out {
+            *out = *out * scale;
+        }
+        out
+    }
 }
 
 names! {

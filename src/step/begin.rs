@@ -1,14 +1,15 @@
 //! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
 
 use super::balance::{self, Sums};
-use super::dense::{add_scaled, gather, interleave};
+use super::dense::{add_scaled, interleave};
 use super::phase::Clock;
 use super::predictor::Predictor;
 use super::predictor::transfer::{ToNodes, ToPoints};
+use super::stage::AtNodes;
 use super::sums::Terms;
 use super::volume::{self, Metric, with_nodes};
 use super::{Method, Phase, Scheme, Scratch, Stage};
-use crate::lane::{Coefficient, F8, LANES, Lanes, Work, store_array};
+use crate::lane::{Coefficient, F8, LANES, Lanes, Work};
 use crate::material::Material;
 use crate::mesh::map;
 use crate::operators::{PointMatrices, Points, Share};
@@ -37,11 +38,30 @@ pub(super) struct Block<'a> {
     pub scratch: &'a mut Scratch,
 }
 
-impl Work for &mut Block<'_> {
+/// G2P, predictor and P2G.
+struct Predict<'a, 'b>(&'a mut Block<'b>, &'a Points);
+
+impl Work for Predict<'_, '_> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        with_law!(&self.scheme.laws[self.scheme.operators.blocks.material[self.block]], law => self.with::<L, _>(law))
+        let Self(block, points) = self;
+        with_law!(&block.scheme.laws[block.scheme.operators.blocks.material[block.block]], law => {
+            // A copy: what is stored in the predictor cannot change it, so its constants stay in registers.
+            let law = *law;
+            block.predict_with::<L, _>(&law, points);
+        });
+    }
+}
+
+/// Sums of several stages.
+struct Sum<'a>(Terms<'a>, &'a [F8], &'a mut [F8]);
+
+impl Work for Sum<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.0.add_to::<L>(self.1, self.2);
     }
 }
 
@@ -80,8 +100,11 @@ impl Block<'_> {
         let (kernel, operators) = (self.scheme.kernel, &self.scheme.operators);
         let (line, n) = (&operators.line, operators.nodes());
         let metric = Metric::of(&operators.geometry, self.block, n);
-        kernel.run(&mut self);
         let mut clock = Clock::now();
+        match &operators.points {
+            None => self.stage(&mut clock),
+            Some(points) => kernel.run(Predict(&mut self, points)),
+        }
         with_nodes!(line.m, M => kernel.run(volume::Volume::<'_, M> {
             line,
             metric,
@@ -100,49 +123,46 @@ impl Block<'_> {
         self.scratch.phases.book(Phase::Volume, &mut clock);
         let (shear, metered) = (self.scheme.flux.has_shear(), self.sums.is_some());
         let width = volume::width(shear, metered);
-        with_nodes!(line.m, M => kernel.run(volume::Traces::<'_, M> {
-            line,
-            metric,
-            arrays: &self.scratch.nodes,
-            width,
-            metered,
-            traces: self.traces,
-        }));
+        let (arrays, traces) = (&self.scratch.nodes, &mut *self.traces);
+        with_nodes!(line.m, M => if metered {
+            kernel.run(volume::Traces::<'_, M, true> { line, metric, arrays, width, traces });
+        } else {
+            kernel.run(volume::Traces::<'_, M, false> { line, metric, arrays, width, traces });
+        });
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
         kernel.run(volume::Speeds { law, normal: metric.normal, width, shear, traces: self.traces });
         self.scratch.phases.book(Phase::Traces, &mut clock);
     }
 
-    #[inline(always)]
-    fn with<L: Lanes, M: Material>(&mut self, law: &M) {
-        let mut clock = Clock::now();
-        match &self.scheme.operators.points {
-            None => self.stage::<L, M>(law, &mut clock),
-            Some(points) => match points.pool.share[self.block] {
-                Share::Shared(k) => self.predict::<L, M, _>(law, points, &points.pool.shared[k], &mut clock),
-                Share::Own(k) => self.predict::<L, M, _>(law, points, &points.pool.own[k], &mut clock),
-            },
-        }
-    }
-
     /// Runge-Kutta: U = U^n + dt sum_j a_ij k_j, and the law at the nodes.
-    #[inline(always)]
-    fn stage<L: Lanes, M: Material>(&mut self, law: &M, clock: &mut Clock) {
-        let (n, begin) = (self.scheme.operators.nodes(), self.rate.len() * self.block);
-        let Method::RungeKutta(tableau) = &self.scheme.method else { return };
+    fn stage(&mut self, clock: &mut Clock) {
+        let (scheme, n, begin) = (self.scheme, self.scheme.operators.nodes(), self.rate.len() * self.block);
+        let Method::RungeKutta(tableau) = &scheme.method else { return };
         let nodes = &mut self.scratch.nodes;
         // The displacement moves nothing: only the six of U are needed.
-        let (start, stage) = (&self.state.u[begin..begin + UNKNOWNS * n], &mut nodes.stage[..UNKNOWNS * n]);
+        let start = &self.state.u[begin..begin + UNKNOWNS * n];
         let factors = tableau.a[self.stage.number].iter().map(|a| a * self.stage.dt);
-        Terms::new(factors, self.before, begin, UNKNOWNS * n).add_to::<L>(start, stage);
-        let inverse_density = L::splat(1.0 / law.density());
-        let (mean, stress) = (nodes.mean.as_chunks_mut::<6>().0, nodes.mean_stress.as_chunks_mut::<4>().0);
-        for (a, (mean, stress)) in mean.iter_mut().zip(stress).enumerate().take(n) {
-            let [f11, f12, f21, f22, p1, p2] = gather::<L, 6>(stage, n, a);
-            store_array([f11, f12, f21, f22, p1 * inverse_density, p2 * inverse_density], mean);
-            store_array(law.stress([f11, f12, f21, f22], &mut []), stress);
-        }
+        let terms = Terms::new(factors, self.before, begin, UNKNOWNS * n);
+        let (start, term) = match terms.few() {
+            Some(term) => (start, term),
+            None => {
+                scheme.kernel.run(Sum(terms, start, &mut nodes.stage[..UNKNOWNS * n]));
+                (&nodes.stage[..UNKNOWNS * n], None)
+            }
+        };
+        let law = &scheme.laws[scheme.operators.blocks.material[self.block]];
+        let (mean, stress) = (&mut nodes.mean[..6 * n], &mut nodes.mean_stress[..4 * n]);
+        scheme.kernel.run(AtNodes { law, start, term, mean, stress });
         self.scratch.phases.book(Phase::Volume, clock);
+    }
+
+    #[inline(always)]
+    fn predict_with<L: Lanes, M: Material>(&mut self, law: &M, points: &Points) {
+        let mut clock = Clock::now();
+        match points.pool.share[self.block] {
+            Share::Shared(k) => self.predict::<L, M, _>(law, points, &points.pool.shared[k], &mut clock),
+            Share::Own(k) => self.predict::<L, M, _>(law, points, &points.pool.own[k], &mut clock),
+        }
     }
 
     /// ADER: G2P (22), predictor (15)-(21), P2G of the averages (18).

@@ -50,36 +50,33 @@ pub fn project<L: Lanes>(
 fn with_matrix<L: Lanes, C: Coefficient>(matrix: &Matrix<C>, theta: L, mass: &[F8], arrays: Arrays, u: &mut [F8]) {
     let (rows, columns, n) = (matrix.rows, matrix.columns, mass.len());
     let Arrays { weighted, coefficients } = arrays;
-    for component in 0..4 {
+    for (weighted, u) in weighted.chunks_exact_mut(n).zip(u.chunks_exact(n)).take(4) {
         for a in 0..n {
-            (L::load(&mass[a]) * L::load(&u[component * n + a])).store(&mut weighted[component * n + a]);
+            (L::load(&mass[a]) * L::load(&u[a])).store(&mut weighted[a]);
         }
     }
     let mut first = 0;
-    while first + COLUMNS <= columns {
-        coefficients_of::<L, C, COLUMNS>(matrix, first, theta, weighted, coefficients);
-        first += COLUMNS;
-    }
     while first < columns {
-        coefficients_of::<L, C, 1>(matrix, first, theta, weighted, coefficients);
-        first += 1;
+        first += match columns - first {
+            1 => coefficients_of::<L, C, 1>(matrix, first, theta, weighted, coefficients),
+            2 | 4 => coefficients_of::<L, C, 2>(matrix, first, theta, weighted, coefficients),
+            _ => coefficients_of::<L, C, 3>(matrix, first, theta, weighted, coefficients),
+        };
     }
     let (one, two) = u[..2 * rows].split_at_mut(rows);
+    // Rows are two a node: an even number.
     let mut r = 0;
-    while r + COLUMNS <= rows {
-        subtract::<L, C, COLUMNS>(matrix, r, coefficients, [&mut *one, &mut *two]);
-        r += COLUMNS;
-    }
     while r < rows {
-        subtract::<L, C, 1>(matrix, r, coefficients, [&mut *one, &mut *two]);
-        r += 1;
+        r += match rows - r {
+            1 => subtract::<L, C, 1>(matrix, r, coefficients, [&mut *one, &mut *two]),
+            2 | 4 => subtract::<L, C, 2>(matrix, r, coefficients, [&mut *one, &mut *two]),
+            _ => subtract::<L, C, 3>(matrix, r, coefficients, [&mut *one, &mut *two]),
+        };
     }
 }
 
-/// Columns (rows) that are worked on together: the sums of both rows of F stay in registers and do not wait for each other.
-const COLUMNS: usize = 3;
-
-/// theta C^T W F of K columns from `first`.
+/// theta C^T W F of K columns from `first`; K. Columns (below, rows) are worked on together: the sums of both rows of F stay
+/// in registers and do not wait for each other.
 #[inline(always)]
 fn coefficients_of<L: Lanes, C: Coefficient, const K: usize>(
     matrix: &Matrix<C>,
@@ -87,49 +84,56 @@ fn coefficients_of<L: Lanes, C: Coefficient, const K: usize>(
     theta: L,
     weighted: &[F8],
     coefficients: &mut [F8],
-) {
+) -> usize {
     let (rows, columns) = (matrix.rows, matrix.columns);
-    let (one, two) = weighted[..2 * rows].split_at(rows);
+    let (one, two) = (&weighted[..rows], &weighted[rows..2 * rows]);
     let mut sum = [[L::zero(); 2]; K];
-    for ((row, one), two) in matrix.data.chunks_exact(columns).zip(one).zip(two) {
-        let (one, two) = (L::load(one), L::load(two));
-        for (sum, entry) in sum.iter_mut().zip(&row[first..first + K]) {
-            let entry = entry.lanes::<L>();
-            sum[0] = entry.mul_add(one, sum[0]);
-            sum[1] = entry.mul_add(two, sum[1]);
+    let mut entries = &matrix.data[first..];
+    for r in 0..rows {
+        let (one, two, row) = (L::load(&one[r]), L::load(&two[r]), &entries[..K]);
+        for k in 0..K {
+            let entry = row[k].lanes::<L>();
+            sum[k][0] = entry.mul_add(one, sum[k][0]);
+            sum[k][1] = entry.mul_add(two, sum[k][1]);
         }
+        entries = &entries[columns.min(entries.len())..];
     }
     for k in 0..K {
         (theta * sum[k][0]).store(&mut coefficients[first + k]);
         (theta * sum[k][1]).store(&mut coefficients[columns + first + k]);
     }
+    K
 }
 
-/// K rows of C times the coefficients, from both rows of F.
+/// Subtracts K rows of C times the coefficients from both rows of F; K.
 #[inline(always)]
 fn subtract<L: Lanes, C: Coefficient, const K: usize>(
     matrix: &Matrix<C>,
     first: usize,
     coefficients: &[F8],
     u: [&mut [F8]; 2],
-) {
+) -> usize {
     let columns = matrix.columns;
-    let (one, two) = coefficients[..2 * columns].split_at(columns);
-    let entries = &matrix.data[first * columns..(first + K) * columns];
+    let (one, two) = (&coefficients[..columns], &coefficients[columns..2 * columns]);
+    let mut rows = [&[] as &[C]; K];
+    for (k, row) in rows.iter_mut().enumerate() {
+        *row = &matrix.data[(first + k) * columns..][..columns];
+    }
     let mut sum = [[L::zero(); 2]; K];
-    for (column, (one, two)) in one.iter().zip(two).enumerate() {
-        let (one, two) = (L::load(one), L::load(two));
+    for column in 0..columns {
+        let (one, two) = (L::load(&one[column]), L::load(&two[column]));
         for k in 0..K {
-            let entry = entries[k * columns + column].lanes::<L>();
+            let entry = rows[k][column].lanes::<L>();
             sum[k][0] = entry.mul_add(one, sum[k][0]);
             sum[k][1] = entry.mul_add(two, sum[k][1]);
         }
     }
     for (i, u) in u.into_iter().enumerate() {
-        for k in 0..K {
-            (L::load(&u[first + k]) - sum[k][i]).store(&mut u[first + k]);
+        for (u, sum) in u[first..first + K].iter_mut().zip(&sum) {
+            (L::load(u) - sum[i]).store(u);
         }
     }
+    K
 }
 
 #[cfg(test)]

@@ -32,6 +32,16 @@ impl<'a> Terms<'a> {
         self
     }
 
+    /// No term or the only one; none where there are more.
+    #[allow(clippy::option_option)]
+    pub fn few(&self) -> Option<Option<(f64, &'a [F8])>> {
+        match self.count {
+            0 => Some(None),
+            1 => Some(Some(self.list[0])),
+            _ => None,
+        }
+    }
+
     /// out = base + the sum; all have the length of `out`.
     #[inline(always)]
     pub fn add_to<L: Lanes>(&self, base: &[F8], out: &mut [F8]) {

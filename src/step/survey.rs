@@ -152,7 +152,9 @@ impl Work for Block<'_> {
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
         let n = operators.nodes();
         let found = match &operators.points {
-            None => with_law!(law, law => examine::<L, _>(law, &Strided { f: u, count: n, point: 1, component: n }, u)),
+            None => {
+                with_law!(law, law => examine::<L, _>(law, &Strided { f: u, count: n, point: 1, component: n }, &u[4 * n..]))
+            }
             Some(points) => {
                 let (nodes, arrays) = (&mut self.scratch.nodes.stage, &mut self.scratch.points);
                 let (f, between) = (&mut arrays.start, &mut arrays.between);
@@ -162,7 +164,7 @@ impl Work for Block<'_> {
                     Share::Shared(k) => to_points::<L, _>(&points.pool.shared[k], nodes, between, f),
                     Share::Own(k) => to_points::<L, _>(&points.pool.own[k], nodes, between, f),
                 };
-                with_law!(law, law => examine::<L, _>(law, &Strided { f, count, point: 4, component: 1 }, u))
+                with_law!(law, law => examine::<L, _>(law, &Strided { f, count, point: 4, component: 1 }, &u[4 * n..]))
             }
         };
         self.scratch.phases.book(Phase::Survey, &mut clock);
@@ -190,10 +192,13 @@ fn to_points<L: Lanes, C: Coefficient>(
     matrices.points()
 }
 
+/// Looks at F at the points and at what else must be finite.
 #[inline(always)]
-fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, u: &[F8]) -> Found {
+fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, others: &[F8]) -> Found {
     let (mut fastest, mut slowest, mut min_j) = (L::zero(), L::splat(f64::INFINITY), L::splat(f64::INFINITY));
     let mut poison = [L::zero(); 4];
+    // A copy: its constants stay in registers.
+    let law = *law;
     for p in 0..points.count {
         let mut f = [L::zero(); 4];
         for (k, f) in f.iter_mut().enumerate() {
@@ -202,11 +207,13 @@ fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, u: &[F8]) -> Found 
         let squares = law.largest_squares(f);
         fastest = fastest.max(squares[0]);
         slowest = slowest.min(squares[1]);
-        min_j = min_j.min(tensor::det(f));
-        poison[p % 4] = (squares[0] + squares[1]).mul_add(L::zero(), poison[p % 4]);
+        let j = tensor::det(f);
+        min_j = min_j.min(j);
+        // What is not finite in F is not finite in J.
+        poison[0] = (squares[0] + squares[1] + j).mul_add(L::zero(), poison[0]);
     }
-    // Four sums that do not wait for each other; the number of unknowns of a block is even, what is left are two.
-    let (fours, rest) = u.as_chunks::<4>();
+    // Four sums that do not wait for each other.
+    let (fours, rest) = others.as_chunks::<4>();
     for u in fours {
         for k in 0..4 {
             poison[k] = L::load(&u[k]).mul_add(L::zero(), poison[k]);

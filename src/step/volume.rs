@@ -50,9 +50,9 @@ pub struct Arrays {
     contravariant: Vec<F8>,
     /// Sources b, averaged over time, [2][node].
     pub source: Vec<F8>,
-    /// Lifted numbers: [face][component][face point].
+    /// Lifted numbers: [face][face point][6].
     pub lift: Vec<F8>,
-    /// Traces across a face whose lanes lie apart.
+    /// Traces across faces whose lanes lie apart: [face][point][width].
     pub across: Vec<F8>,
     /// Rows of F in the weighted inner product, and their coefficients, for the curl-free projection.
     pub weighted: Vec<F8>,
@@ -72,7 +72,7 @@ impl Arrays {
             contravariant: zeros(4 * n),
             source: zeros(2 * n),
             lift: zeros(4 * 6 * m),
-            across: zeros(m * width(true, true)),
+            across: zeros(4 * m * width(true, true)),
             weighted: zeros(4 * n),
             coefficients: zeros(4 * n),
         }
@@ -96,6 +96,7 @@ pub struct Metric<'a> {
 
 impl<'a> Metric<'a> {
     /// That of a block with n nodes a cell.
+    #[inline(always)]
     pub fn of(geometry: &'a Geometry, block: usize, n: usize) -> Self {
         Self {
             cofactor: &geometry.cofactor[4 * n * block..4 * n * (block + 1)],
@@ -107,12 +108,12 @@ impl<'a> Metric<'a> {
     }
 }
 
-/// The first M rows of M numbers.
+/// The first M rows of M numbers. (Arrays of constant size: a loop over slices becomes a call of `memcpy`.)
 #[inline(always)]
 fn square<const M: usize>(numbers: &[f64]) -> [[f64; M]; M] {
     let mut out = [[0.0; M]; M];
-    for (out, row) in out.iter_mut().zip(numbers.as_chunks::<M>().0) {
-        *out = *row;
+    if let Some(rows) = numbers.as_chunks::<M>().0.first_chunk::<M>() {
+        out = *rows;
     }
     out
 }
@@ -146,64 +147,71 @@ impl<const M: usize> Work for Volume<'_, M> {
                 }
             }
         }
-        self.strong::<L>();
-        self.weak::<L>();
+        self.rates::<L>();
     }
 }
 
+/// sum_k row_k values_k for the K numbers from `first` of each value.
+#[inline(always)]
+fn line_sum<L: Lanes, const M: usize, const W: usize, const K: usize>(
+    row: &[f64; M],
+    values: [&[F8; W]; M],
+    first: usize,
+) -> [L; K] {
+    let mut sum = [L::zero(); K];
+    for e in 0..K {
+        sum[e] = L::splat(row[0]) * L::load(&values[0][first + e]);
+    }
+    for k in 1..M {
+        let factor = L::splat(row[k]);
+        for e in 0..K {
+            sum[e] = factor.mul_add(L::load(&values[k][first + e]), sum[e]);
+        }
+    }
+    sum
+}
+
+/// The M values of a line of nodes: i or j runs.
+#[inline(always)]
+fn nodes_of<const M: usize, const W: usize>(values: &[[F8; W]], first: usize, stride: usize) -> [&[F8; W]; M] {
+    let mut out = [&values[0]; M];
+    for k in 0..M {
+        out[k] = &values[first + stride * k];
+    }
+    out
+}
+
 impl<const M: usize> Volume<'_, M> {
-    /// Rows of F: D v.
+    /// Rows of F: D v; rows of p in weak form.
     #[inline(always)]
-    fn strong<L: Lanes>(&mut self) {
-        let slope = square::<M>(&self.line.slope);
+    fn rates<L: Lanes>(&mut self) {
+        let (slope, weak) = (square::<M>(&self.line.slope), square::<M>(&self.line.weak));
         let n = M * M;
-        let (mean, rate) = (&self.arrays.mean.as_chunks::<6>().0[..n], &mut self.rate[..4 * n]);
+        let mean = &self.arrays.mean.as_chunks::<6>().0[..n];
+        let traction = &self.arrays.contravariant.as_chunks::<4>().0[..n];
         let cofactor = &self.metric.cofactor.as_chunks::<4>().0[..n];
         let scale = Scale::<M>::of(self.line, self.metric);
+        let rate = &mut self.rate[..6 * n];
         for i in 0..M {
             for j in 0..M {
                 let a = i * M + j;
-                let mut d = [[L::zero(); 2]; 2];
-                for k in 0..M {
-                    let along = [L::splat(slope[i][k]), L::splat(slope[j][k])];
-                    let v = [&mean[k * M + j], &mean[i * M + k]];
-                    for r in 0..2 {
-                        d[r][0] = along[0].mul_add(L::load(&v[0][4 + r]), d[r][0]);
-                        d[r][1] = along[1].mul_add(L::load(&v[1][4 + r]), d[r][1]);
-                    }
+                let scale = scale.at::<L>(i, j);
+                let first = line_sum::<L, M, 6, 2>(&slope[i], nodes_of(mean, j, M), 4);
+                let second = line_sum::<L, M, 6, 2>(&slope[j], nodes_of(mean, i * M, 1), 4);
+                let mut c = load_array::<L, 4>(&cofactor[a]);
+                for c in &mut c {
+                    *c = *c * scale;
                 }
-                let (c, scale) = (load_array::<L, 4>(&cofactor[a]), scale.at::<L>(i, j));
                 for r in 0..2 {
                     for axis in 0..2 {
-                        let gradient = d[r][0].mul_add(c[axis], d[r][1] * c[2 + axis]);
-                        (gradient * scale).store(&mut rate[(2 * r + axis) * n + a]);
+                        let gradient = first[r].mul_add(c[axis], second[r] * c[2 + axis]);
+                        gradient.store(&mut rate[(2 * r + axis) * n + a]);
                     }
                 }
-            }
-        }
-    }
-
-    /// Rows of p in weak form.
-    #[inline(always)]
-    fn weak<L: Lanes>(&mut self) {
-        let weak = square::<M>(&self.line.weak);
-        let n = M * M;
-        let (traction, rate) = (&self.arrays.contravariant.as_chunks::<4>().0[..n], &mut self.rate[4 * n..6 * n]);
-        let scale = Scale::<M>::of(self.line, self.metric);
-        for i in 0..M {
-            for j in 0..M {
-                let mut sum = [[L::zero(); 2]; 2];
-                for k in 0..M {
-                    let along = [L::splat(weak[i][k]), L::splat(weak[j][k])];
-                    let t = [&traction[k * M + j], &traction[i * M + k]];
-                    for r in 0..2 {
-                        sum[r][0] = along[0].mul_add(L::load(&t[0][r]), sum[r][0]);
-                        sum[r][1] = along[1].mul_add(L::load(&t[1][2 + r]), sum[r][1]);
-                    }
-                }
-                let scale = scale.at::<L>(i, j);
+                let first = line_sum::<L, M, 4, 2>(&weak[i], nodes_of(traction, j, M), 0);
+                let second = line_sum::<L, M, 4, 2>(&weak[j], nodes_of(traction, i * M, 1), 2);
                 for r in 0..2 {
-                    (-((sum[r][0] + sum[r][1]) * scale)).store(&mut rate[r * n + i * M + j]);
+                    ((first[r] + second[r]) * -scale).store(&mut rate[(4 + r) * n + a]);
                 }
             }
         }
@@ -231,15 +239,14 @@ impl<'a, const M: usize> Scale<'a, M> {
 /// The first M numbers.
 #[inline(always)]
 pub fn row<const M: usize>(numbers: &[f64]) -> [f64; M] {
-    let mut out = [0.0; M];
-    for (out, x) in out.iter_mut().zip(numbers) {
-        *out = *x;
+    match numbers.first_chunk::<M>() {
+        Some(row) => *row,
+        None => [0.0; M],
     }
-    out
 }
 
-/// Traces of all faces but for the speeds, from the averages at the nodes.
-pub struct Traces<'a, const M: usize> {
+/// Traces of all faces but for the speeds, from the averages at the nodes; with s = P T where METERED.
+pub struct Traces<'a, const M: usize, const METERED: bool> {
     /// The 1D tables.
     pub line: &'a Line,
     /// The block.
@@ -248,13 +255,11 @@ pub struct Traces<'a, const M: usize> {
     pub arrays: &'a Arrays,
     /// Numbers of a trace, see [`width`].
     pub width: usize,
-    /// Whether s = P T is wanted.
-    pub metered: bool,
     /// [face][point][`width`], out.
     pub traces: &'a mut [F8],
 }
 
-impl<const M: usize> Work for Traces<'_, M> {
+impl<const M: usize, const METERED: bool> Work for Traces<'_, M, METERED> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
@@ -267,7 +272,7 @@ impl<const M: usize> Work for Traces<'_, M> {
     }
 }
 
-impl<const M: usize> Traces<'_, M> {
+impl<const M: usize, const METERED: bool> Traces<'_, M, METERED> {
     /// Those of a face that xi1 runs towards (FIRST), or xi2.
     #[inline(always)]
     fn of_face<L: Lanes, const FIRST: bool>(&mut self, face: usize) {
@@ -278,32 +283,19 @@ impl<const M: usize> Traces<'_, M> {
         let width = self.width;
         let out = &mut self.traces[face * M * width..(face + 1) * M * width];
         for (point, out) in out.chunks_exact_mut(width).enumerate().take(M) {
-            let mut stress = [L::zero(); 4];
-            for k in 0..M {
-                let values = &mean_stress[if FIRST { k * M + point } else { point * M + k }];
-                let end = L::splat(ends[k]);
-                for e in 0..4 {
-                    stress[e] = end.mul_add(L::load(&values[e]), stress[e]);
-                }
-            }
+            let (first, stride) = if FIRST { (point, M) } else { (point * M, 1) };
+            let stress = line_sum::<L, M, 4, 4>(&ends, nodes_of(mean_stress, first, stride), 0);
             store_array(tensor::times(stress, normal), &mut out[6..8]);
-            if self.metered {
+            if METERED {
                 store_array(tensor::times(stress, tangent(normal)), &mut out[width - 2..]);
             }
-            let mut sum = [L::zero(); 6];
-            for k in 0..M {
-                let values = &mean[if FIRST { k * M + point } else { point * M + k }];
-                let end = L::splat(ends[k]);
-                for e in 0..6 {
-                    sum[e] = end.mul_add(L::load(&values[e]), sum[e]);
-                }
-            }
-            store_array(sum, &mut out[..6]);
+            store_array(line_sum::<L, M, 6, 6>(&ends, nodes_of(mean, first, stride), 0), &mut out[..6]);
         }
     }
 }
 
-/// The speeds of all traces: those of the averaged F.
+/// The speeds of all traces: those of the averaged F. W numbers a trace, see [`width`]; c_s where the flux is one that looks
+/// at it.
 pub struct Speeds<'a> {
     /// The law.
     pub law: &'a Law,
@@ -320,24 +312,41 @@ pub struct Speeds<'a> {
 impl Work for Speeds<'_> {
     type Out = ();
     #[inline(always)]
-    fn run<L: Lanes>(self) {
-        with_law!(self.law, law => self.with::<L, _>(law));
+    fn run<L: Lanes>(mut self) {
+        with_law!(self.law, law => {
+            // A copy: what is stored below cannot change it, so its constants stay in registers.
+            let law = *law;
+            match (self.shear, self.width == width(self.shear, true)) {
+                (false, false) => self.of_pressure::<L, _, { width(false, false) }>(law),
+                (false, true) => self.of_pressure::<L, _, { width(false, true) }>(law),
+                (true, false) => self.of_both::<L, _, { width(true, false) }>(law),
+                (true, true) => self.of_both::<L, _, { width(true, true) }>(law),
+            }
+        });
     }
 }
 
 impl Speeds<'_> {
     #[inline(always)]
-    fn with<L: Lanes, M: Material>(self, law: &M) {
-        let points = self.traces.len() / (4 * self.width);
-        for (face, traces) in self.traces.chunks_exact_mut(points * self.width).enumerate() {
+    fn of_pressure<L: Lanes, M: Material, const W: usize>(&mut self, law: M) {
+        let traces = self.traces.as_chunks_mut::<W>().0;
+        let points = traces.len() / 4;
+        for face in 0..4 {
             let normal = load_array::<L, 2>(&self.normal[2 * face..2 * face + 2]);
-            for trace in traces.chunks_exact_mut(self.width) {
-                let f = load_array::<L, 4>(&trace[..4]);
-                if self.shear {
-                    store_array(law.speeds(f, normal), &mut trace[8..10]);
-                } else {
-                    law.pressure_speed(f, normal).store(&mut trace[8]);
-                }
+            for trace in &mut traces[face * points..(face + 1) * points] {
+                law.pressure_speed(load_array::<L, 4>(&trace[..4]), normal).store(&mut trace[8]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn of_both<L: Lanes, M: Material, const W: usize>(&mut self, law: M) {
+        let traces = self.traces.as_chunks_mut::<W>().0;
+        let points = traces.len() / 4;
+        for face in 0..4 {
+            let normal = load_array::<L, 2>(&self.normal[2 * face..2 * face + 2]);
+            for trace in &mut traces[face * points..(face + 1) * points] {
+                store_array(law.speeds(load_array::<L, 4>(&trace[..4]), normal), &mut trace[8..10]);
             }
         }
     }

@@ -1,0 +1,62 @@
+//! The start of a Runge-Kutta stage: U = U^n + dt sum_j a_ij k_j at the nodes, and the law there.
+
+use crate::lane::{F8, Lanes, Work, store_array};
+use crate::material::{Law, Material};
+use crate::with_law;
+
+/// A state at the nodes, and its Q.
+pub struct AtNodes<'a> {
+    /// The law.
+    pub law: &'a Law,
+    /// U^n, [component][node].
+    pub start: &'a [F8],
+    /// One term of the sum, factor and rate, as most tableaux have at each stage.
+    pub term: Option<(f64, &'a [F8])>,
+    /// F and v, [node][6], out.
+    pub mean: &'a mut [F8],
+    /// P, [node][4], out.
+    pub stress: &'a mut [F8],
+}
+
+impl Work for AtNodes<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(mut self) {
+        with_law!(self.law, law => {
+            // A copy: what is stored below cannot change it, so its constants stay in registers.
+            let law = *law;
+            match self.term {
+                None => self.with::<L, _, 0>(law, 0.0, &[]),
+                Some((factor, rate)) => self.with::<L, _, 1>(law, factor, rate),
+            }
+        });
+    }
+}
+
+impl AtNodes<'_> {
+    /// With so many TERMS, 0 or 1.
+    #[inline(always)]
+    fn with<L: Lanes, M: Material, const TERMS: usize>(&mut self, law: M, factor: f64, rate: &[F8]) {
+        let (mean, stress) = (self.mean.as_chunks_mut::<6>().0, self.stress.as_chunks_mut::<4>().0);
+        let n = stress.len();
+        let mean = &mut mean[..n];
+        let (mut start, mut slope) = ([&[] as &[F8]; 6], [&[] as &[F8]; 6]);
+        for k in 0..6 {
+            start[k] = &self.start[k * n..][..n];
+            slope[k] = if TERMS > 0 { &rate[k * n..][..n] } else { start[k] };
+        }
+        let (factor, inverse_density) = (L::splat(factor), L::splat(1.0 / law.density()));
+        for a in 0..n {
+            let mut u = [L::zero(); 6];
+            for k in 0..6 {
+                u[k] = L::load(&start[k][a]);
+                if TERMS > 0 {
+                    u[k] = factor.mul_add(L::load(&slope[k][a]), u[k]);
+                }
+            }
+            let f = [u[0], u[1], u[2], u[3]];
+            store_array([u[0], u[1], u[2], u[3], u[4] * inverse_density, u[5] * inverse_density], &mut mean[a]);
+            store_array(law.stress(f, &mut []), &mut stress[a]);
+        }
+    }
+}
