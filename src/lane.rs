@@ -91,6 +91,26 @@ pub trait Lanes: Lane {
     fn store(self, to: &mut F8);
     /// From one number for each lane.
     fn from_lanes(numbers: [f64; LANES]) -> Self;
+    /// Rows of cells that begin in other lanes: lane l of each of `out` is lane l + r of `first` for l < 8 - r, then lane
+    /// l + r - 8 of `second`; r in 1..8.
+    ///
+    /// # Panics
+    /// Where the three are not of one length.
+    #[inline(always)]
+    fn join(first: &[F8], second: &[F8], r: usize, out: &mut [F8]) {
+        assert!(first.len() == out.len() && second.len() == out.len());
+        for (out, (first, second)) in out.iter_mut().zip(first.iter().zip(second)) {
+            joined(first, second, r, out);
+        }
+    }
+}
+
+/// [`Lanes::join`] of one number.
+#[inline(always)]
+fn joined(first: &F8, second: &F8, r: usize, out: &mut F8) {
+    for (lane, out) in out.0.iter_mut().enumerate() {
+        *out = if lane + r < LANES { first.0[lane + r] } else { second.0[lane + r - LANES] };
+    }
 }
 
 /// K numbers that lie behind each other. (`array::from_fn` and `array::map` take closures, which are not inlined.)
@@ -287,7 +307,7 @@ pub use x86::Avx2;
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    use super::{CUBE_ROOT_MAGIC, F8, LANES, Lane, Lanes, Work};
+    use super::{CUBE_ROOT_MAGIC, F8, LANES, Lane, Lanes, Work, as_f64, joined};
     use std::arch::x86_64::*;
     use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -389,7 +409,30 @@ mod x86 {
             // SAFETY: see Avx2.
             unsafe { Avx2(_mm256_setr_pd(n[0], n[1], n[2], n[3]), _mm256_setr_pd(n[4], n[5], n[6], n[7])) }
         }
+        #[inline(always)]
+        fn join(first: &[F8], second: &[F8], r: usize, out: &mut [F8]) {
+            assert!(first.len() == out.len() && second.len() == out.len() && r < LANES);
+            // At the ends there may be nothing to read beside what is wanted.
+            let Some(last) = out.len().checked_sub(1) else { return };
+            for k in [0, last] {
+                joined(&first[k], &second[k], r, &mut out[k]);
+            }
+            let (one, two) = (as_f64(first).as_ptr(), as_f64(second).as_ptr());
+            // SAFETY: see Avx2; 8 k + r to 8 k + r + 7 and 8 k + r - 8 to 8 k + r - 1 lie within both for 0 < k < last.
+            unsafe {
+                let masks = [_mm256_loadu_pd(SECOND.as_ptr().add(r)), _mm256_loadu_pd(SECOND.as_ptr().add(r + 4))];
+                for k in 1..last {
+                    let (one, two) = (one.add(LANES * k + r), two.add(LANES * k + r - LANES));
+                    let low = _mm256_blendv_pd(_mm256_loadu_pd(one), _mm256_loadu_pd(two), masks[0]);
+                    let high = _mm256_blendv_pd(_mm256_loadu_pd(one.add(4)), _mm256_loadu_pd(two.add(4)), masks[1]);
+                    Avx2(low, high).store(out.get_unchecked_mut(k));
+                }
+            }
+        }
     }
+
+    /// The sign is set from number 8 on: where the second of two numbers is taken.
+    static SECOND: [f64; 16] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0];
 
     #[target_feature(enable = "avx2,fma")]
     pub(super) fn enter_avx2<W: Work>(work: W) -> W::Out {
@@ -467,6 +510,35 @@ mod tests {
             let relative = (x.inverse_cube_root() * x.cbrt() - 1.0).abs();
             // 3 ulp: two roundings in the last step, one in the product formed here.
             assert!(relative < 7e-16, "x = {x}: {relative:e}");
+        }
+    }
+
+    struct Join<'a>(&'a [F8], &'a [F8], usize);
+    impl Work for Join<'_> {
+        type Out = Vec<F8>;
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Vec<F8> {
+            let mut out = vec![F8::ZERO; self.0.len()];
+            L::join(self.0, self.1, self.2, &mut out);
+            out
+        }
+    }
+
+    #[test]
+    fn join_takes_the_end_of_one_and_the_start_of_the_other_on_every_path() {
+        for count in 0..5 {
+            let of = |start: usize| -> Vec<F8> {
+                (0..count).map(|k| F8(std::array::from_fn(|lane| (start + 8 * k + lane) as f64))).collect()
+            };
+            let (first, second) = (of(0), of(100));
+            for r in 1..8 {
+                for kernel in [Kernel::Portable, Kernel::widest()] {
+                    for (k, out) in kernel.run(Join(&first, &second, r)).iter().enumerate() {
+                        let both: Vec<f64> = first[k].0.iter().chain(&second[k].0).copied().collect();
+                        assert_eq!(out.0, both[r..r + 8], "{k} {r}");
+                    }
+                }
+            }
         }
     }
 

@@ -11,9 +11,9 @@ use crate::mesh::Mesh;
 use crate::operators::stored::Flat;
 use crate::operators::{Blocks, Needs, Sampling, Stored};
 
-/// The format of the stored matrices. Version 2: cells of a block lie far apart, see [`Blocks`].
+/// The format of the stored matrices. Version 3: cells of a block follow each other, see [`Blocks`].
 pub const FORMAT: Format =
-    Format { name: "dgmpm operators", version: 2, remedy: "write it again by `dgmpm preprocess`" };
+    Format { name: "dgmpm operators", version: 3, remedy: "write it again by `dgmpm preprocess`" };
 
 /// The key: a hash of mesh, pairs of periodic groups, cloud (or nodes), degree, the law of each cell, and which
 /// matrices are asked for.

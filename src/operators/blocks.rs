@@ -1,5 +1,6 @@
 //! Cells in blocks of 8 lanes of one law, and where each face's neighbour keeps its trace.
 
+use super::order;
 use crate::lane::{F8, LANES};
 use crate::mesh::Link;
 
@@ -33,6 +34,16 @@ pub enum Side {
     /// Each lane's in the same lane of one face of one block, with the points in the same order: read as it lies. Lanes
     /// at a boundary find there what they must not use.
     Aligned(usize),
+    /// Lane l in lane l + `by` of the `first` face for l < 8 - `by`, then in lane l + `by` - 8 of the `second`, with the
+    /// points in the same order: cells in rows. Lanes at a boundary find there what they must not use.
+    Joined {
+        /// A face, 4 block + local face.
+        first: usize,
+        /// Another, or the same.
+        second: usize,
+        /// 1 to 7.
+        by: usize,
+    },
     /// Anywhere: entry of [`Blocks::gathered`].
     Gathered(usize),
 }
@@ -46,21 +57,11 @@ pub struct Plan {
     pub special: bool,
 }
 
-/// A block whose fluxes can be found once the traces of all blocks up to `after` are there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Ready {
-    /// The last of itself and its neighbours.
-    pub after: usize,
-    /// The block.
-    pub block: usize,
-}
-
 /// The blocks; the last one of a law is padded with its last cell.
 ///
-/// Which cells share a block is chosen by counting faces that are [`Side::Aligned`]. Far apart: the cells of a law, in
-/// their order, are cut into eight runs, and lane l goes through the l-th, so that on structured meshes neighbours are in
-/// the same lane of another block nearly everywhere. Side by side: eight cells that follow each other, which keeps
-/// neighbours near in memory where the mesh has no such order. Bits of the cells do not depend on it.
+/// A block holds eight cells of a law that follow each other, in the order of the mesh or in that of Cuthill and McKee,
+/// whichever has neighbours nearer; so stand the blocks themselves. What is under way in a step is then a small part of the
+/// mesh. Cells keep their numbers everywhere else, and bits do not depend on it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Blocks {
     /// The cell of each lane (padding repeats the last real one).
@@ -77,20 +78,53 @@ pub struct Blocks {
     pub plan: Vec<[Plan; 4]>,
     /// Other sides lane by lane; lanes at a boundary and padding see themselves.
     pub gathered: Vec<[Across; LANES]>,
-    /// All blocks in the order in which their neighbours are done, if blocks are done one by one.
-    pub sequence: Vec<Ready>,
 }
 
 impl Blocks {
     /// Blocks for cells with the given laws and links.
     pub fn new(material: &[usize], links: &[[Link; 4]]) -> Self {
-        let [near, far] = [side_by_side, far_apart].map(|order| Self::ordered(material, links, order));
-        if far.aligned() > near.aligned() { far } else { near }
+        let graph: Vec<Vec<usize>> = links.iter().map(|links| cells_of(links).collect()).collect();
+        let own = Self::in_order(material, links, (0..links.len()).collect());
+        if own.gathered.is_empty() {
+            return own;
+        }
+        // Rows of a structured mesh lie as they should, however large its bandwidth is.
+        let other = Self::in_order(material, links, order::cuthill_mckee(&graph));
+        if 10 * other.gathered.len() < 9 * own.gathered.len() || own.reach() > 2 * other.reach() { other } else { own }
     }
 
-    /// Blocks of the cells of each law in an `order`.
-    fn ordered(material: &[usize], links: &[[Link; 4]], order: fn(usize) -> Vec<Vec<usize>>) -> Self {
-        let laws = material.iter().max().map_or(0, |last| last + 1);
+    /// Blocks of the cells of each law in an `order`, side by side.
+    fn in_order(material: &[usize], links: &[[Link; 4]], order: Vec<usize>) -> Self {
+        let mut of_law = vec![vec![]; material.iter().max().map_or(0, |last| last + 1)];
+        order.into_iter().for_each(|cell| of_law[material[cell]].push(cell));
+        let lists: Vec<&[usize]> = of_law.iter().flat_map(|cells: &Vec<usize>| cells.chunks(LANES)).collect();
+        let mut of = vec![0; material.len()];
+        lists.iter().enumerate().for_each(|(block, list)| list.iter().for_each(|&cell| of[cell] = block));
+        let around = |(block, list): (usize, &&[usize])| {
+            let all = list.iter().flat_map(|&cell| cells_of(&links[cell])).map(|cell| of[cell]);
+            let mut all: Vec<usize> = all.filter(|&other| other != block).collect();
+            all.sort_unstable();
+            all.dedup();
+            all
+        };
+        let graph: Vec<Vec<usize>> = lists.iter().enumerate().map(around).collect();
+        Self::of_lists(material, links, &lists, &order::narrow(&graph))
+    }
+
+    /// Sum over all blocks of how far their farthest neighbour is.
+    fn reach(&self) -> usize {
+        let of = |(block, neighbours): (usize, &[[Neighbour; LANES]; 4])| {
+            let far = neighbours.iter().flatten().map(|neighbour| match neighbour {
+                Neighbour::Cell(across) | Neighbour::Interface(across, _) => block.abs_diff(across.face / 4),
+                Neighbour::Boundary(_) | Neighbour::Padding => 0,
+            });
+            far.max().unwrap_or(0)
+        };
+        self.neighbours.iter().enumerate().map(of).sum()
+    }
+
+    /// Blocks of `lists` of cells of one law, in an `order`.
+    fn of_lists(material: &[usize], links: &[[Link; 4]], lists: &[&[usize]], order: &[usize]) -> Self {
         let mut blocks = Self {
             cells: vec![],
             count: vec![],
@@ -99,41 +133,21 @@ impl Blocks {
             neighbours: vec![],
             plan: vec![],
             gathered: vec![],
-            sequence: vec![],
         };
-        for law in 0..laws {
-            let cells: Vec<usize> = (0..material.len()).filter(|&cell| material[cell] == law).collect();
-            for chunk in order(cells.len()) {
-                let chunk: Vec<usize> = chunk.into_iter().map(|k| cells[k]).collect();
-                for (lane, &cell) in chunk.iter().enumerate() {
-                    blocks.slot[cell] = (blocks.cells.len(), lane);
-                }
-                blocks.cells.push(std::array::from_fn(|lane| chunk[lane.min(chunk.len() - 1)]));
-                blocks.count.push(chunk.len());
-                blocks.material.push(law);
+        for list in order.iter().map(|&k| &lists[k]) {
+            for (lane, &cell) in list.iter().enumerate() {
+                blocks.slot[cell] = (blocks.cells.len(), lane);
             }
+            blocks.cells.push(std::array::from_fn(|lane| list[lane.min(list.len() - 1)]));
+            blocks.count.push(list.len());
+            blocks.material.push(material[list[0]]);
         }
         blocks.neighbours = (0..blocks.len()).map(|b| blocks.neighbours_of(b, material, links)).collect();
         for block in 0..blocks.len() {
             let plan = std::array::from_fn(|face| blocks.plan_of(block, face));
             blocks.plan.push(plan);
         }
-        blocks.sequence = (0..blocks.len()).map(|block| blocks.ready(block)).collect();
-        blocks.sequence.sort_by_key(|ready| (ready.after, ready.block));
         blocks
-    }
-
-    fn ready(&self, block: usize) -> Ready {
-        let neighbours = self.neighbours[block].iter().flatten().filter_map(|neighbour| match neighbour {
-            Neighbour::Cell(across) | Neighbour::Interface(across, _) => Some(across.face / 4),
-            Neighbour::Boundary(_) | Neighbour::Padding => None,
-        });
-        Ready { after: neighbours.fold(block, usize::max), block }
-    }
-
-    /// Number of faces that are read as they lie.
-    fn aligned(&self) -> usize {
-        self.plan.iter().flatten().filter(|plan| matches!(plan.side, Side::Aligned(_))).count()
     }
 
     fn plan_of(&mut self, block: usize, face: usize) -> Plan {
@@ -153,6 +167,9 @@ impl Blocks {
         }
         if aligned {
             return Plan { side: Side::Aligned(source.unwrap_or(4 * block + face)), special };
+        }
+        if let Some(side) = joined(&across, &lanes).filter(|_| self.count[block] == LANES) {
+            return Plan { side, special };
         }
         self.gathered.push(across);
         Plan { side: Side::Gathered(self.gathered.len() - 1), special }
@@ -174,7 +191,6 @@ impl Blocks {
             + std::mem::size_of_val(&self.cells[..])
             + std::mem::size_of_val(&self.plan[..])
             + std::mem::size_of_val(&self.gathered[..])
-            + std::mem::size_of_val(&self.sequence[..])
     }
 
     fn neighbours_of(&self, block: usize, material: &[usize], links: &[[Link; 4]]) -> [[Neighbour; LANES]; 4] {
@@ -223,15 +239,27 @@ impl Blocks {
     }
 }
 
-/// Blocks of `count` cells that follow each other.
-fn side_by_side(count: usize) -> Vec<Vec<usize>> {
-    (0..count).step_by(LANES).map(|first| (first..count.min(first + LANES)).collect()).collect()
+/// Whether the lanes across a face follow each other in one or two faces.
+fn joined(across: &[Across; LANES], neighbours: &[Neighbour; LANES]) -> Option<Side> {
+    let is_cell = |lane: &usize| matches!(neighbours[*lane], Neighbour::Cell(_) | Neighbour::Interface(..));
+    (1..LANES).find_map(|by| {
+        let mut faces = [None; 2];
+        for lane in (0..LANES).filter(is_cell) {
+            let (at, second) = (across[lane], lane + by >= LANES);
+            let face = *faces[usize::from(second)].get_or_insert(at.face);
+            if at != (Across { face, lane: (lane + by) % LANES, flip: false }) {
+                return None;
+            }
+        }
+        let any = faces[0].or(faces[1])?;
+        Some(Side::Joined { first: faces[0].unwrap_or(any), second: faces[1].unwrap_or(any), by })
+    })
 }
 
-/// Blocks of one cell of each of eight runs. Runs differ by at most one cell, the longer ones first.
-fn far_apart(count: usize) -> Vec<Vec<usize>> {
-    let (short, longer) = (count / LANES, count % LANES);
-    let start = |lane: usize| lane * short + lane.min(longer);
-    let runs = |k: usize| if k < short { LANES } else { longer };
-    (0..count.div_ceil(LANES)).map(|k| (0..runs(k)).map(|lane| start(lane) + k).collect()).collect()
+/// The cells across the faces of a cell.
+fn cells_of(links: &[Link; 4]) -> impl Iterator<Item = usize> {
+    links.iter().filter_map(|link| match link {
+        Link::Cell { cell, .. } => Some(*cell),
+        Link::Boundary(_) => None,
+    })
 }

@@ -5,6 +5,7 @@ pub mod certificate;
 pub mod curl_free;
 pub mod geometry;
 pub mod matrix;
+mod order;
 pub mod point_matrices;
 pub mod points;
 pub mod stored;

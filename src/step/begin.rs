@@ -26,8 +26,8 @@ pub(super) struct Block<'a> {
     pub block: usize,
     /// The state at t_n.
     pub state: &'a State,
-    /// dU/dt of earlier stages.
-    pub before: &'a [Vec<F8>],
+    /// dU/dt of the block in earlier stages, [stage][component][node].
+    pub before: &'a [F8],
     /// Volume part of dU/dt of this block (out).
     pub rate: &'a mut [F8],
     /// Traces of this block (out).
@@ -136,13 +136,13 @@ impl Block<'_> {
 
     /// Runge-Kutta: U = U^n + dt sum_j a_ij k_j, and the law at the nodes.
     fn stage(&mut self, clock: &mut Clock) {
-        let (scheme, n, begin) = (self.scheme, self.scheme.operators.nodes(), self.rate.len() * self.block);
+        let (scheme, n, stride) = (self.scheme, self.scheme.operators.nodes(), self.rate.len());
         let Method::RungeKutta(tableau) = &scheme.method else { return };
         let nodes = &mut self.scratch.nodes;
         // The displacement moves nothing: only the six of U are needed.
-        let start = &self.state.u[begin..begin + UNKNOWNS * n];
+        let start = &self.state.u[stride * self.block..][..UNKNOWNS * n];
         let factors = tableau.a[self.stage.number].iter().map(|a| a * self.stage.dt);
-        let terms = Terms::new(factors, self.before, begin, UNKNOWNS * n);
+        let terms = Terms::new(factors, self.before, stride, UNKNOWNS * n);
         let (start, term) = match terms.few() {
             Some(term) => (start, term),
             None => {

@@ -22,12 +22,14 @@ pub(super) struct Block<'a> {
     pub state: &'a State,
     /// Its wave speeds.
     pub survey: &'a Survey,
-    /// dU/dt of earlier stages.
-    pub before: &'a [Vec<F8>],
+    /// dU/dt of the block in earlier stages, [stage][component][node].
+    pub before: &'a [F8],
     /// dU/dt of this block: volume part in, all out.
     pub rate: &'a mut [F8],
-    /// Traces of all blocks.
+    /// Traces under way, [slot][face][point][width].
     pub traces: &'a [F8],
+    /// The slot of each block.
+    pub slots: &'a [u32],
     /// New unknowns of this block (out, after the last stage).
     pub next: &'a mut [F8],
     /// Its balance of energy; none where it is off.
@@ -42,7 +44,7 @@ impl Block<'_> {
         let (kernel, operators) = (self.scheme.kernel, &self.scheme.operators);
         let mut clock = Clock::now();
         let place = flux::Place { scheme: self.scheme, stage: self.stage, block: self.block };
-        flux::lift(place, self.traces, &mut self.scratch.nodes, self.sums.as_deref_mut());
+        flux::lift(place, self.traces, self.slots, &mut self.scratch.nodes, self.sums.as_deref_mut());
         let (inverse_mass, lift) = (place.metric().inverse_mass, &self.scratch.nodes.lift);
         let line = &operators.line;
         with_nodes!(line.m, M => kernel.run(Lift::<'_, M> { line, inverse_mass, lift, rate: self.rate }));
@@ -93,7 +95,7 @@ impl<'b> Block<'b> {
         let (stride, dt, last) = (self.rate.len(), self.stage.dt, self.stage.number);
         let begin = stride * self.block;
         let factors = (0..last).map(|stage| dt * self.scheme.weight(stage));
-        let terms = Terms::new(factors, self.before, begin, stride).and(dt * self.scheme.weight(last), self.rate);
+        let terms = Terms::new(factors, self.before, stride, stride).and(dt * self.scheme.weight(last), self.rate);
         terms.add_to::<L>(&self.state.u[begin..begin + stride], self.next);
     }
 

@@ -53,11 +53,28 @@ fn turned<L: Lanes, const W: usize>(mut x: [L; W]) -> [L; W] {
     x
 }
 
-/// Traces that lie apart, lane by lane, in the order of the points of this side.
+/// Where the traces of a face, numbered 4 block + local face, lie among those under way.
+#[inline(always)]
+fn face_in(slots: &[u32], face: usize) -> usize {
+    4 * slots[face / 4] as usize + face % 4
+}
+
+/// How the traces across a face lie apart.
+#[derive(Clone, Copy)]
+enum Apart<'a> {
+    /// See [`Side::Joined`].
+    Joined { first: usize, second: usize, by: usize },
+    /// Lane by lane.
+    Anywhere(&'a [Across; LANES]),
+}
+
+/// Traces that lie apart, in the order of the points of this side.
 struct Collect<'a> {
-    /// Traces of all faces.
+    /// Traces under way, [slot][face][point][width].
     traces: &'a [F8],
-    across: &'a [Across; LANES],
+    /// The slot of each block.
+    slots: &'a [u32],
+    from: Apart<'a>,
     /// Numbers of a trace.
     width: usize,
     /// [point][width], out.
@@ -81,14 +98,23 @@ impl Collect<'_> {
     #[inline(always)]
     fn with<L: Lanes, const W: usize>(self) {
         let out = self.out.as_chunks_mut::<W>().0;
-        let (m, stride) = (out.len(), (W * LANES) as isize);
-        let (mut first, mut step) = ([0; LANES], [stride; LANES]);
-        for lane in 0..LANES {
-            let there = &self.across[lane];
-            first[lane] = (there.face * m + if there.flip { m - 1 } else { 0 }) * W * LANES + there.lane;
-            step[lane] = if there.flip { -stride } else { stride };
+        match self.from {
+            Apart::Joined { first, second, by } => {
+                let of = |face: usize| &self.traces[face_in(self.slots, face) * out.len() * W..][..out.len() * W];
+                L::join(of(first), of(second), by, out.as_flattened_mut());
+            }
+            Apart::Anywhere(across) => {
+                let (m, stride) = (out.len(), (W * LANES) as isize);
+                let (mut first, mut step) = ([0; LANES], [stride; LANES]);
+                for lane in 0..LANES {
+                    let there = &across[lane];
+                    let point = if there.flip { m - 1 } else { 0 };
+                    first[lane] = (face_in(self.slots, there.face) * m + point) * W * LANES + there.lane;
+                    step[lane] = if there.flip { -stride } else { stride };
+                }
+                gather_run::<L, W>(self.traces, &first, &step, out);
+            }
         }
-        gather_run::<L, W>(self.traces, &first, &step, out);
     }
 }
 
@@ -205,9 +231,9 @@ impl Meter<'_, '_> {
     }
 }
 
-/// Lifted numbers of all faces of a block, from the traces of all blocks, into `nodes.lift`; what they add to the balance
+/// Lifted numbers of all faces of a block, from the traces in the `slots` of the blocks, into `nodes.lift`; what they add to the balance
 /// into `sums`.
-pub(super) fn lift(place: Place, traces: &[F8], nodes: &mut Arrays, mut sums: Option<&mut Sums>) {
+pub(super) fn lift(place: Place, traces: &[F8], slots: &[u32], nodes: &mut Arrays, mut sums: Option<&mut Sums>) {
     let Place { scheme, block, .. } = place;
     let (blocks, m) = (&scheme.operators.blocks, scheme.operators.line.m);
     let (flux, metered) = (scheme.flux, sums.is_some());
@@ -217,17 +243,20 @@ pub(super) fn lift(place: Place, traces: &[F8], nodes: &mut Arrays, mut sums: Op
     let mut other: [&[F8]; 4] = [&[]; 4];
     let mut room = &mut nodes.across[..];
     for face in 0..4 {
-        other[face] = match plan[face].side {
-            Side::Aligned(there) => &traces[there * length..][..length],
-            Side::Gathered(entry) => {
-                let (out, rest) = room.split_at_mut(length);
-                room = rest;
-                scheme.kernel.run(Collect { traces, across: &blocks.gathered[entry], width, out });
-                out
+        let from = match plan[face].side {
+            Side::Aligned(there) => {
+                other[face] = &traces[face_in(slots, there) * length..][..length];
+                continue;
             }
+            Side::Joined { first, second, by } => Apart::Joined { first, second, by },
+            Side::Gathered(entry) => Apart::Anywhere(&blocks.gathered[entry]),
         };
+        let (out, rest) = room.split_at_mut(length);
+        room = rest;
+        scheme.kernel.run(Collect { traces, slots, from, width, out });
+        other[face] = out;
     }
-    let own = &traces[4 * block * length..][..4 * length];
+    let own = &traces[face_in(slots, 4 * block) * length..][..4 * length];
     let (metric, weights, density) = (place.metric(), &scheme.operators.line.basis.weights[..m], place.law().density());
     scheme.kernel.run(Faces { flux, metered, own, other, metric, weights, density, lift: &mut nodes.lift });
     for face in 0..4 {

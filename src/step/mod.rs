@@ -15,10 +15,12 @@ mod flux;
 pub mod phase;
 mod predictor;
 mod runge_kutta;
+mod schedule;
 mod stage;
 mod sums;
 mod survey;
 pub mod sweeps;
+mod tiles;
 mod volume;
 
 pub use balance::Balance;
@@ -36,8 +38,6 @@ use crate::operators::Operators;
 use crate::riemann::Flux;
 use crate::source::Source;
 use crate::state::State;
-use rayon::iter::Either;
-use rayon::prelude::*;
 use std::sync::Mutex;
 
 /// How time is integrated.
@@ -78,10 +78,8 @@ pub struct Scheme {
 pub struct Work {
     /// The new state, once the step is done; the caller swaps it in if it is healthy.
     pub next: State,
-    /// dU/dt of each stage, as `State::u`.
-    rates: Vec<Vec<F8>>,
-    /// Traces of all faces: [block][face][point][`volume::width` numbers].
-    traces: Vec<F8>,
+    /// Rates and traces under way.
+    tiles: schedule::Tiles,
     /// The balance of the step, by block; none where nobody asks for it.
     balance: Option<Vec<balance::Sums>>,
     /// One a thread.
@@ -113,8 +111,7 @@ impl Work {
         };
         Self {
             next: state.clone(),
-            rates: vec![vec![F8::ZERO; state.u.len()]; scheme.stages()],
-            traces: scheme.room_for_traces(false),
+            tiles: schedule::Tiles::new(scheme, state.components * operators.nodes()),
             balance: None,
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
             rate: phase::Rate::start(),
@@ -133,7 +130,7 @@ impl Work {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let numbers = self.next.u.len() + self.traces.len() + self.rates.iter().map(Vec::len).sum::<usize>();
+        let numbers = self.next.u.len() + self.tiles.numbers();
         numbers * size_of::<F8>() + self.balance.as_ref().map_or(0, |sums| size_of_val(&sums[..]))
     }
 }
@@ -156,17 +153,6 @@ pub(crate) fn with_scratch<R>(scratch: &[Mutex<Scratch>], body: impl FnOnce(&mut
     body(&mut guard)
 }
 
-/// The balance of each block, or for each block none.
-fn sums(
-    balance: &mut Option<Vec<balance::Sums>>,
-    blocks: usize,
-) -> impl IndexedParallelIterator<Item = Option<&mut balance::Sums>> {
-    match balance {
-        Some(sums) => Either::Left(sums.par_iter_mut().map(Some)),
-        None => Either::Right((0..blocks).into_par_iter().map(|_| None)),
-    }
-}
-
 impl Method {
     /// ADER of degree N_T in time for degree N in space, with the sweeps of [`Sweeps::of_degree`].
     pub fn ader(degree: usize, time_degree: usize) -> Self {
@@ -185,123 +171,17 @@ impl Scheme {
                 let mut times = [TimeNode { time: 0.0, weight: 0.0 }; 8];
                 times.iter_mut().zip(time.tau.iter().zip(&time.weights)).for_each(|(t, n)| *t = node(n));
                 let times = &times[..time.len()];
-                let stage = Stage { number: 0, times, dt };
-                self.stage(&stage, state, survey, work);
+                self.run_stages(&[Stage { number: 0, times, dt }], state, survey, work);
             }
             Method::RungeKutta(tableau) => {
-                for number in 0..tableau.stages() {
-                    let times = [TimeNode { time: state.time + tableau.c[number] * dt, weight: 1.0 }];
-                    let stage = Stage { number, times: &times, dt };
-                    self.stage(&stage, state, survey, work);
-                }
+                let mut times = [[TimeNode { time: 0.0, weight: 1.0 }]; tiles::STAGES];
+                times.iter_mut().zip(&tableau.c).for_each(|(node, c)| node[0].time = state.time + c * dt);
+                let stages = tiles::stages(&times, dt);
+                self.run_stages(&stages[..tableau.stages()], state, survey, work);
             }
         }
         work.next.time = state.time + dt;
         work.next.step = state.step + 1;
-    }
-
-    /// `begin` and `finish` of every block; the bits do not depend on the order.
-    fn stage(&self, stage: &Stage, state: &State, survey: &Survey, work: &mut Work) {
-        if rayon::current_num_threads() == 1 {
-            self.pipelined(stage, state, survey, work);
-        } else {
-            self.begin(stage, state, work);
-            self.finish(stage, state, survey, work);
-        }
-    }
-
-    /// One thread: `finish` follows `begin` as closely as neighbours allow, while traces and rates are still in the cache.
-    fn pipelined(&self, stage: &Stage, state: &State, survey: &Survey, work: &mut Work) {
-        let blocks = &self.operators.blocks;
-        let (stride, width) = (state.components * self.operators.nodes(), work.traces.len() / blocks.len().max(1));
-        let (before, now) = work.rates.split_at_mut(stage.number);
-        let (before, rates, next) = (&*before, &mut now[0], &mut work.next.u);
-        let (traces, balance) = (&mut work.traces, &mut work.balance);
-        let mut sequence = blocks.sequence.iter().copied().peekable();
-        with_scratch(&work.scratch, |scratch| {
-            for block in 0..blocks.len() {
-                let rate = &mut rates[block * stride..(block + 1) * stride];
-                let sums = balance.as_mut().map(|sums| &mut sums[block]);
-                let traces_of = &mut traces[block * width..(block + 1) * width];
-                let scratch = &mut *scratch;
-                begin::Block { scheme: self, stage, block, state, before, rate, traces: traces_of, sums, scratch }
-                    .run();
-                while let Some(ready) = sequence.next_if(|ready| ready.after <= block) {
-                    let at = ready.block * stride..(ready.block + 1) * stride;
-                    let block = finish::Block {
-                        scheme: self,
-                        stage,
-                        block: ready.block,
-                        state,
-                        survey,
-                        before,
-                        rate: &mut rates[at.clone()],
-                        traces,
-                        next: &mut next[at],
-                        sums: balance.as_mut().map(|sums| &mut sums[ready.block]),
-                        scratch: &mut *scratch,
-                    };
-                    block.run();
-                }
-            }
-        });
-    }
-
-    /// Volume term and traces of every block.
-    fn begin(&self, stage: &Stage, state: &State, work: &mut Work) {
-        let stride = state.components * self.operators.nodes();
-        let blocks = self.operators.blocks.len();
-        let traces = work.traces.len() / blocks.max(1);
-        let (before, now) = work.rates.split_at_mut(stage.number);
-        let (before, scratch) = (&*before, &work.scratch);
-        let outputs = now[0].par_chunks_mut(stride).zip(work.traces.par_chunks_mut(traces.max(1)));
-        outputs.zip(sums(&mut work.balance, blocks)).enumerate().for_each(|(block, ((rate, traces), sums))| {
-            with_scratch(scratch, |scratch| {
-                begin::Block { scheme: self, stage, block, state, before, rate, traces, sums, scratch }.run()
-            })
-        });
-    }
-
-    /// Fluxes, lift, and after the last stage the update, of every block.
-    fn finish(&self, stage: &Stage, state: &State, survey: &Survey, work: &mut Work) {
-        let stride = state.components * self.operators.nodes();
-        let (before, now) = work.rates.split_at_mut(stage.number);
-        let (before, scratch, traces) = (&*before, &work.scratch, &work.traces[..]);
-        let outputs = now[0].par_chunks_mut(stride).zip(work.next.u.par_chunks_mut(stride));
-        let sums = sums(&mut work.balance, self.operators.blocks.len());
-        outputs.zip(sums).enumerate().for_each(|(block, ((rate, next), sums))| {
-            with_scratch(scratch, |scratch| {
-                let block = finish::Block {
-                    scheme: self,
-                    stage,
-                    block,
-                    state,
-                    survey,
-                    before,
-                    rate,
-                    traces,
-                    next,
-                    sums,
-                    scratch,
-                };
-                block.run()
-            })
-        });
-    }
-
-    /// Memory for the traces of all faces.
-    fn room_for_traces(&self, metered: bool) -> Vec<F8> {
-        vec![F8::ZERO; self.trace_numbers(metered)]
-    }
-
-    fn trace_numbers(&self, metered: bool) -> usize {
-        let points = 4 * self.operators.blocks.len() * self.operators.line.m;
-        points * volume::width(self.flux.has_shear(), metered)
-    }
-
-    /// Bytes of the traces of all faces, without the balance.
-    pub fn trace_bytes(&self) -> usize {
-        self.trace_numbers(false) * size_of::<F8>()
     }
 
     /// What the rate of a stage counts in U^(n+1) = U^n + dt sum_s b_s k_s; 1 for ADER.

@@ -1,9 +1,7 @@
 //! Sums of Runge-Kutta stages, U + sum_j factor_j k_j, read from memory once.
 
+use super::tiles::STAGES;
 use crate::lane::{F8, Lanes};
-
-/// Most stages of a tableau.
-const STAGES: usize = 12;
 
 /// The terms factor_j k_j of a block.
 #[derive(Clone, Copy)]
@@ -13,11 +11,11 @@ pub struct Terms<'a> {
 }
 
 impl<'a> Terms<'a> {
-    /// Of those `factors` that are not zero, `rates` being those of all blocks, cut at `begin` to `len` numbers.
-    pub fn new(factors: impl Iterator<Item = f64>, rates: &'a [Vec<F8>], begin: usize, len: usize) -> Self {
+    /// Of those `factors` that are not zero, `rates` being those of the block, [stage][`stride` numbers], cut to `len`.
+    pub fn new(factors: impl Iterator<Item = f64>, rates: &'a [F8], stride: usize, len: usize) -> Self {
         let mut terms = Self { list: [(0.0, &[]); STAGES], count: 0 };
-        for (factor, rate) in factors.zip(rates).filter(|(factor, _)| *factor != 0.0).take(STAGES) {
-            terms.list[terms.count] = (factor, &rate[begin..begin + len]);
+        for (stage, factor) in factors.enumerate().filter(|(_, factor)| *factor != 0.0).take(STAGES) {
+            terms.list[terms.count] = (factor, &rates[stage * stride..][..len]);
             terms.count += 1;
         }
         terms

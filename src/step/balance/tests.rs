@@ -153,7 +153,9 @@ fn without_the_balance_there_is_no_memory_for_it() {
     let mesh = distorted(3);
     let scheme = scheme(&mesh, Kind::AderDgmpm, 2, &midpoints(&mesh, 2), wall);
     let state = state(&mesh, &scheme, wavy);
-    let (off, on) = (Work::new(&scheme, &state), Work::new(&scheme, &state).with_balance(&scheme));
+    // On one thread there is one tile.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let (off, on) = pool.install(|| (Work::new(&scheme, &state), Work::new(&scheme, &state).with_balance(&scheme)));
     assert!(!off.has_balance() && on.has_balance());
     // 2 blocks: per point of 4 x 3 two numbers of the trace, and 5 sums.
     assert_eq!(on.bytes() - off.bytes(), 2 * (4 * 3 * 2 + 5) * size_of::<F8>());

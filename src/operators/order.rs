@@ -1,0 +1,86 @@
+//! Orders of the nodes of a graph in which neighbours are near.
+
+/// The nodes in their own order, or in that of Cuthill and McKee where its bandwidth is smaller.
+pub fn narrow(graph: &[Vec<usize>]) -> Vec<usize> {
+    let own: Vec<usize> = (0..graph.len()).collect();
+    let other = cuthill_mckee(graph);
+    let mut place = own.clone();
+    other.iter().enumerate().for_each(|(k, &node)| place[node] = k);
+    if bandwidth(graph, &place) < bandwidth(graph, &own) { other } else { own }
+}
+
+/// Largest difference of the places of two neighbours, `place` being that of each node of a graph.
+fn bandwidth(graph: &[Vec<usize>], place: &[usize]) -> usize {
+    let of = |(node, neighbours): (usize, &Vec<usize>)| {
+        neighbours.iter().map(|&other| place[node].abs_diff(place[other])).max().unwrap_or(0)
+    };
+    graph.iter().enumerate().map(of).max().unwrap_or(0)
+}
+
+/// Cuthill and McKee's order: breadth first from a node at the edge of the graph, neighbours by their degree. Parts that do
+/// not hang together follow each other. (Proc. 24th Nat. Conf. ACM, 1969.)
+pub fn cuthill_mckee(graph: &[Vec<usize>]) -> Vec<usize> {
+    let mut order = Vec::with_capacity(graph.len());
+    let mut seen = vec![false; graph.len()];
+    for first in 0..graph.len() {
+        if seen[first] {
+            continue;
+        }
+        // The last node of a search lies at the edge; twice makes it nearly as far as can be.
+        let mut start = first;
+        for _ in 0..2 {
+            let mut visited = seen.clone();
+            start = *search(graph, start, &mut visited).last().unwrap_or(&start);
+        }
+        order.extend(search(graph, start, &mut seen));
+    }
+    order
+}
+
+/// Breadth first from `start` over what is not `seen` yet.
+fn search(graph: &[Vec<usize>], start: usize, seen: &mut [bool]) -> Vec<usize> {
+    let (mut order, mut next) = (vec![start], 0);
+    seen[start] = true;
+    while let Some(&node) = order.get(next) {
+        next += 1;
+        let first = order.len();
+        for &other in &graph[node] {
+            if !std::mem::replace(&mut seen[other], true) {
+                order.push(other);
+            }
+        }
+        order[first..].sort_by_key(|&other| (graph[other].len(), other));
+    }
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ring of n nodes, numbered around.
+    fn ring(n: usize) -> Vec<Vec<usize>> {
+        (0..n).map(|k| vec![(k + 1) % n, (k + n - 1) % n]).collect()
+    }
+
+    fn places(order: &[usize]) -> Vec<usize> {
+        let mut place = vec![usize::MAX; order.len()];
+        order.iter().enumerate().for_each(|(k, &node)| place[node] = k);
+        place
+    }
+
+    #[test]
+    fn the_order_of_cuthill_and_mckee_unrolls_a_ring_and_keeps_parts_apart() {
+        let mut graph = ring(20);
+        assert_eq!(bandwidth(&graph, &(0..20).collect::<Vec<_>>()), 19);
+        // Both ways around at once: two places apart at most.
+        assert_eq!(bandwidth(&graph, &places(&cuthill_mckee(&graph))), 2);
+        graph.extend(ring(5).into_iter().map(|around| around.into_iter().map(|k| k + 20).collect()));
+        let order = cuthill_mckee(&graph);
+        assert!(order[..20].iter().all(|&k| k < 20) && order.len() == 25);
+        assert_eq!(bandwidth(&graph, &places(&order)), 2);
+        assert_eq!(narrow(&graph), order);
+        let line: Vec<Vec<usize>> = vec![vec![1], vec![0, 2], vec![1]];
+        assert_eq!(narrow(&line), [0, 1, 2]);
+    }
+}
