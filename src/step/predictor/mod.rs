@@ -7,6 +7,7 @@
 mod rates;
 pub mod transfer;
 
+use super::history::recall;
 use super::{Method, Sweeps};
 use crate::lane::{Coefficient, F8, Kernel, Lanes, load_array, store_array};
 use crate::material::Material;
@@ -70,6 +71,8 @@ pub struct Predictor<'a, M, C> {
     pub sweeps: &'a Sweeps,
     /// Step, s.
     pub dt: f64,
+    /// Internal variables at t_n, [p][variable]; empty for a law without.
+    pub internal: &'a [F8],
     /// The instruction set.
     pub kernel: Kernel,
 }
@@ -153,7 +156,8 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         let q = &mut q.as_chunks_mut::<6>().0[..base.len()];
         for (p, q) in q.iter_mut().enumerate() {
             let f = state::<L, 0, 4>(base, before, row, p);
-            let stress = turn.apply(self.law.stress(f, &mut []));
+            let mut internal = recall::<L, M>(self.law, self.internal, p);
+            let stress = turn.apply(self.law.stress(f, &mut internal[..M::INTERNAL.len()]));
             stress[0].store(&mut q[0]);
             stress[1].store(&mut q[1]);
             stress[2].store(&mut q[4]);
@@ -191,7 +195,8 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
             for (row, weight) in rows.iter().zip(self.weights) {
                 // Sources do not act on F: from U^n itself.
                 let f = state::<L, 0, 4>(start, before, &row[..last.from], p);
-                let (weight, stress) = (L::splat(*weight), self.law.stress(f, &mut []));
+                let mut internal = recall::<L, M>(self.law, self.internal, p);
+                let (weight, stress) = (L::splat(*weight), self.law.stress(f, &mut internal[..M::INTERNAL.len()]));
                 for i in 0..4 {
                     sum[i] = weight.mul_add(stress[i], sum[i]);
                 }
