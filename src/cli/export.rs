@@ -4,6 +4,7 @@ use super::pipeline::Body;
 use super::preprocess::certificates;
 use super::print::say;
 use crate::basis::Lagrange;
+use crate::cloud::Cloud;
 use crate::error::{Error, Result};
 use crate::io::grid::Field as Values;
 use crate::io::snapshot::Snapshot;
@@ -44,6 +45,8 @@ struct Export {
     body: Body,
     laws: Vec<Law>,
     basis: Lagrange,
+    /// Where internal variables stand.
+    places: Cloud,
     fields: Vec<Field>,
     cell_fields: Vec<Values>,
     out: PathBuf,
@@ -83,17 +86,26 @@ impl Export {
         let body = Body { mesh, cloud, material };
         let cell_fields = export::cell_fields(&body.mesh, &certificates(&scene, &body)?, &body.material);
         let (laws, basis) = (scene.build_laws(), Lagrange::new(scene.scheme.degree));
-        Ok(Self { laws, basis, fields: scene.export_fields(), cell_fields, out: folder.export(), body })
+        let places = scene.places(&body.cloud);
+        Ok(Self { laws, basis, places, fields: scene.export_fields(), cell_fields, out: folder.export(), body })
     }
 
     /// Reads a snapshot and hands its solution to `use_it`.
     fn with<R>(&self, path: &Path, use_it: impl FnOnce(&Solution, f64) -> Result<R>) -> Result<R> {
         let snapshot = Snapshot::read(path)?;
-        if snapshot.cells() != self.body.mesh.cells.len() || snapshot.degree + 1 != self.basis.len() {
+        let same = snapshot.cells() == self.body.mesh.cells.len() && snapshot.degree + 1 == self.basis.len();
+        if !same || snapshot.internal.len() != self.internal() {
             let what = format!("{} does not belong to the scene and mesh of this run", path.display());
             return Err(Error::input(what, "run the scene again with --force"));
         }
-        use_it(&Solution::of_snapshot(&snapshot, &self.basis, &self.laws, &self.body.material), snapshot.time)
+        let Self { basis, laws, body, places, .. } = self;
+        use_it(&Solution::of_snapshot(&snapshot, basis, laws, &body.material, places), snapshot.time)
+    }
+
+    /// The number of internal variables of all points.
+    fn internal(&self) -> usize {
+        let of = |(cell, &law): (usize, &usize)| self.laws[law].internal().len() * self.places.of(cell).len();
+        self.body.material.iter().enumerate().map(of).sum()
     }
 
     /// Fields that the solution has.

@@ -1,4 +1,4 @@
-//! Snapshots of the grid unknowns, one file each: what `export` and a restart read.
+//! Snapshots of the grid unknowns and internal variables, one file each: what `export` and a restart read.
 
 use super::{Observer, Schedule, View};
 use crate::error::Error;
@@ -50,5 +50,6 @@ pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
         u.extend_from_slice(unknowns);
         displacement.extend_from_slice(others);
     }
-    Snapshot { time: state.time, step: state.step, degree: scheme.operators.degree, u, displacement, internal: vec![] }
+    let internal = scheme.internal_of(state);
+    Snapshot { time: state.time, step: state.step, degree: scheme.operators.degree, u, displacement, internal }
 }

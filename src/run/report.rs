@@ -58,9 +58,10 @@ impl Report {
     pub(super) fn start(&mut self, scheme: &Scheme, state: &State, work: &Work) {
         self.clock = (Instant::now(), ProcessTime::now());
         let first = scheme.totals(state);
-        self.balance = work.has_balance().then(|| Balance::starting_at(first.energy()));
+        self.balance = work.has_balance().then(|| Balance::starting_at(first.accounted()));
         self.first = Some(first);
-        self.bytes = scheme.operators.bytes() + work.bytes() + size_of_val(&state.u[..]);
+        self.bytes =
+            scheme.operators.bytes() + work.bytes() + size_of_val(&state.u[..]) + size_of_val(&state.internal[..]);
     }
 
     pub(super) fn count(&mut self, scheme: &Scheme, dt: f64, survey: &Survey, work: &mut Work) {
@@ -118,8 +119,11 @@ impl Report {
             ("min_j", json!(self.min_j.min(last.min_j))),
             ("max_curl_f", json!(last.max_curl)),
         ];
+        if let Some(plastic) = last.plastic {
+            pairs.push(("plastic_dissipation", json!(plastic)));
+        }
         if let Some(balance) = &self.balance {
-            pairs.push(("balance", balance_json(balance, last.energy())));
+            pairs.push(("balance", balance_json(balance, last.accounted())));
         }
         let first = self.first.and_then(|first| first.angular_momentum);
         if let Some((first, last)) = first.zip(last.angular_momentum) {

@@ -17,7 +17,7 @@ use crate::operators::{Needs, Operators, Sampling};
 use crate::run::{Folder, Settings};
 use crate::source::{self, BodyForce};
 use crate::state::{State, UNKNOWNS};
-use crate::step::{Method as Integration, Scheme, Sweeps as Picard, Tableau, cfl};
+use crate::step::{Histories, Method as Integration, Scheme, Sweeps as Picard, Tableau, cfl};
 use crate::tensor;
 use crate::{basis::TimeBasis, scene};
 use std::path::Path;
@@ -124,13 +124,17 @@ impl Scene {
 
     /// The laws, in the order of the `[[material]]` tables.
     pub fn build_laws(&self) -> Vec<Law> {
-        let build = |m: &scene::Material| {
-            let parameter = |name: &str| m.parameters.get(name).copied().unwrap_or(f64::NAN);
-            let law = LAWS.iter().find(|law| law.name == m.law)?;
-            Some((law.build)(&parameter, m.density))
-        };
-        // Parsing has refused names that the list lacks.
-        self.materials.iter().filter_map(build).collect()
+        laws(&self.materials)
+    }
+
+    /// Where internal variables stand, as [`Scheme::places`] has it: the cloud, or the nodes.
+    pub fn places(&self, cloud: &Cloud) -> Cloud {
+        if self.scheme.method == Method::AderDgmpm {
+            return cloud.clone();
+        }
+        let (nodes, cells) = (crate::operators::Line::new(self.scheme.degree).nodes(), cloud.first.len() - 1);
+        let first = (0..=cells).map(|cell| cell * nodes.len()).collect();
+        Cloud { first, xi: std::iter::repeat_n(nodes, cells).flatten().collect() }
     }
 
     /// Time integration.
@@ -164,9 +168,11 @@ impl Scene {
         if let Some(exact) = self.build_exact().filter(|exact| exact.body_force([0.0; 2], 0.0).is_some()) {
             sources.push(Box::new(ExactForce(exact)));
         }
+        let laws = self.build_laws();
         Scheme {
+            histories: Histories::new(&operators, &laws),
             operators,
-            laws: self.build_laws(),
+            laws,
             method: self.integration(),
             flux: self.scheme.flux,
             boundaries,
@@ -204,7 +210,9 @@ impl Scene {
                 u.into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
             }
         }
-        Ok(State::pack(&scheme.operators.blocks, n, components, &cells))
+        let mut state = State::pack(&scheme.operators.blocks, n, components, &cells);
+        scheme.set_internal(&mut state, &scheme.virgin_internal());
+        Ok(state)
     }
 
     fn check_initial(&self, f: [f64; 4], v: [f64; 2], x: [f64; 2], cell: u64) -> Result<()> {
@@ -277,12 +285,13 @@ impl Scene {
     /// A line that leaves the mesh ([`Scene::check_lines`] has its place); files that cannot be made.
     pub fn observers(&self, mesh: &Mesh, folder: &Folder) -> Result<Vec<Box<dyn Observer>>> {
         let material = self.material_of_cells(mesh);
+        let plastic = self.build_laws().iter().any(|law| !law.internal().is_empty());
         let mut out: Vec<Box<dyn Observer>> = Vec::new();
         for output in &self.outputs {
             let schedule = schedule(output);
             out.push(match (output.what, samples(output)) {
                 (What::Ledger { balance }, _) => {
-                    Box::new(Ledger::create(&folder.ledger(), schedule.with_end(), balance)?)
+                    Box::new(Ledger::create(&folder.ledger(), schedule.with_end(), plastic, balance)?)
                 }
                 (_, Some(samples)) => {
                     Box::new(Line::create(&folder.line(&output.name), mesh, &material, &samples, schedule)?)
@@ -292,7 +301,7 @@ impl Scene {
         }
         if !self.outputs.iter().any(|output| matches!(output.what, What::Ledger { .. })) {
             let schedule = Schedule::new(crate::observe::When::EverySteps(LEDGER_STEPS), false).with_end();
-            out.push(Box::new(Ledger::create(&folder.ledger(), schedule, false)?));
+            out.push(Box::new(Ledger::create(&folder.ledger(), schedule, plastic, false)?));
         }
         Ok(out)
     }
@@ -300,9 +309,22 @@ impl Scene {
     /// The fields that an export shows: those of the first `fields` output, or all that the state has.
     pub fn export_fields(&self) -> Vec<Field> {
         let asked = self.outputs.iter().find(|output| output.what == What::Fields).map(|output| output.fields.clone());
-        let all = || Field::NAMES.iter().map(|(_, field)| *field).filter(|f| *f != Field::Displacement).collect();
+        let laws = self.build_laws();
+        let there = |field: &Field| *field != Field::Displacement && field.is_of(&laws);
+        let all = || Field::NAMES.iter().map(|(_, field)| *field).filter(there).collect();
         asked.unwrap_or_else(all)
     }
+}
+
+/// The laws of some materials.
+pub(super) fn laws(materials: &[scene::Material]) -> Vec<Law> {
+    let build = |m: &scene::Material| {
+        let parameter = |name: &str| m.parameters.get(name).copied().unwrap_or(f64::NAN);
+        let law = LAWS.iter().find(|law| law.name == m.law)?;
+        Some((law.build)(&parameter, m.density))
+    };
+    // Parsing has refused names that the list lacks.
+    materials.iter().filter_map(build).collect()
 }
 
 impl scene::Initial {
