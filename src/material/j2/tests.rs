@@ -174,8 +174,8 @@ fn equal_principal_strains_are_no_singular_case() {
             let at = law.response([stretch, 0.0, 0.0, stretch], &virgin);
             let stresses = near.piola.iter().zip(at.piola).map(|(a, b)| (a - b) / SCALE);
             for difference in stresses.chain(near.internal.iter().zip(at.internal).map(|(a, b)| a - b)) {
-                // Continuous: the strains differ by `off`, some roundings of 1e-16.
-                assert!(difference.abs() <= 2.0 * off + 1e-14, "{stretch} {off}: {difference:e}");
+                // Continuous: Cp^-1 changes by 2 off / stretch^3 at most; some roundings of 1e-16.
+                assert!(difference.abs() <= 4.0 * off + 1e-14, "{stretch} {off}: {difference:e}");
             }
         }
     }
