@@ -104,7 +104,7 @@ mod tests {
         for (found, expected) in [
             (-behind.piola[0], 7_456_560_800.845),
             (behind.internal[4], 0.025_751_598_117_6),
-            (plastic, 4688.971_541_956),
+            (plastic, 4_688.971_541_956),
         ] {
             // Differences of stresses of the size of the moduli: 1e-16 2e11 / 7e9 each.
             assert!((found / expected - 1.0).abs() < 1e-11, "{found} {expected}");

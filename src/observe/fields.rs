@@ -175,6 +175,9 @@ mod tests {
         assert_eq!(of(&plastic, Field::InversePlasticMetric), [1.1, 0.1, 0.8, 1.2]);
         assert_eq!([of(&plastic, Field::PlasticStrain), of(&elastic, Field::PlasticStrain)], [[0.3], [0.0]]);
         assert_eq!(of(&elastic, Field::InversePlasticMetric), [1.0, 0.0, 1.0, 1.0]);
-        assert!(!Field::PlasticStrain.is_of(&[elastic.clone()]) && Field::PlasticStrain.is_of(&[elastic, plastic]));
+        assert!(
+            !Field::PlasticStrain.is_of(std::slice::from_ref(&elastic))
+                && Field::PlasticStrain.is_of(&[elastic, plastic])
+        );
     }
 }

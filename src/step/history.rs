@@ -4,7 +4,6 @@
 //! RK-DGFEM) its nodes, and are never projected. The predictor and every stage integrate the law from their values h_n at
 //! the start of the step, without storing what comes out; the step ends with h_(n+1) = law(F_p^(n+1), h_n).
 
-use super::phase::Clock;
 use super::survey::{Strided, at_points};
 use super::{Phase, Scheme, Scratch, Work as Memory, with_scratch};
 use crate::cloud::Cloud;
@@ -133,7 +132,7 @@ impl Work for Remember<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { scheme, block, u, before, after, scratch } = self;
-        let mut clock = Clock::now();
+        let mut clock = scratch.phases.clock();
         let points = at_points::<L>(scheme, u, block, &mut scratch.nodes, &mut scratch.points);
         with_law!(&scheme.laws[scheme.operators.blocks.material[block]], law => {
             remember::<L, _>(*law, &points, before, after);

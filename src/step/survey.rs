@@ -1,7 +1,6 @@
 //! The health of a state: current wave speeds (for dt and LCF), min J, and where stability was lost.
 
 use super::history::recall;
-use super::phase::Clock;
 use super::predictor::{self, transfer::ToPoints};
 use super::volume;
 use super::{Phase, Scheme, Scratch, Work as Memory, dense, with_scratch};
@@ -147,7 +146,7 @@ impl Work for Block<'_> {
     type Out = Found;
     #[inline(always)]
     fn run<L: Lanes>(self) -> Found {
-        let mut clock = Clock::now();
+        let mut clock = self.scratch.phases.clock();
         let operators = &self.scheme.operators;
         let stride = self.state.components * operators.nodes();
         let u = &self.state.u[stride * self.block..stride * (self.block + 1)];

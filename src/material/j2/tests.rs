@@ -102,8 +102,8 @@ proptest! {
         let (internal, r) = (history(&law, &way), rotation(angle));
         let (still, turned) = (law.response(to, &internal), law.response(product(r, to), &internal));
         let expected = product(r, still.piola);
-        for k in 0..4 {
-            prop_assert!((turned.piola[k] - expected[k]).abs() < 1e-13 * SCALE);
+        for (a, b) in turned.piola.iter().zip(expected) {
+            prop_assert!((a - b).abs() < 1e-13 * SCALE);
         }
         for (a, b) in turned.internal.iter().zip(still.internal) {
             // The plastic multiplier is a difference of stresses over 2 mu.
