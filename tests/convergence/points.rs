@@ -9,13 +9,13 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 /// A family of clouds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Points {
-    /// (N+2)^2 anywhere in each cell.
+    /// (N+3)^2 anywhere in each cell.
     Random,
-    /// As many in the mean, at a distance from each other, whatever the cells.
+    /// (N+2)^2 in the mean, at a distance from each other, whatever the cells.
     PoissonDisk,
-    /// (N+2)^2 in each cell around four centres.
+    /// (N+3)^2 in each cell around four centres.
     Cluster,
-    /// A lattice with as many in the mean, turned by 30 degrees against the grid.
+    /// A lattice with (N+2)^2 in the mean, turned by 30 degrees against the grid.
     Rotated,
     /// (N+1)^2 jittered ones, but one cell in eight is empty, and one in eight has a single point.
     Deficient,
@@ -33,8 +33,8 @@ impl Points {
         let all = vec![true; cells];
         let spacing = body::mean_spacing(mesh, &all, k);
         match self {
-            Points::Random => seed(Layout::Random { seed: 1 }, k, cells),
-            Points::Cluster => seed(Layout::Cluster { seed: 1, clusters: 4, radius: 0.2 }, k, cells),
+            Points::Random => seed(Layout::Random { seed: 1 }, k + 1, cells),
+            Points::Cluster => seed(Layout::Cluster { seed: 1, clusters: 4, radius: 0.2 }, k + 1, cells),
             Points::PoissonDisk => Pattern::PoissonDisk { seed: 1, spacing: Pattern::DISK * spacing }.seed(mesh, &all),
             Points::Rotated => Pattern::Rotated { angle: 30.0, spacing }.seed(mesh, &all),
             Points::Deficient => {
