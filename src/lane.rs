@@ -3,13 +3,16 @@
 //! Fields are stored as plain [`F8`]; kernels are generic over a [`Lanes`] type that loads and stores
 //! them, and laws over a [`Lane`], of which `f64` is the single-lane case (boundaries, probes, tests).
 //! [`Kernel::run`] picks the widest type that the processor has and enters a function compiled for it, so
-//! that one portable binary runs everywhere. All `unsafe` of the program is in this file.
+//! that one portable binary runs everywhere. All `unsafe` of the program is in this module.
 //!
 //! Pitfall: every generic function on the hot path needs `#[inline(always)]`, and closures cannot have it (so no
 //! `array::map` there either): one that is not inlined is compiled without the processor's features, 4-6 times
 //! slower, silently. `tests/inlining.rs` looks for such calls in the binary.
 
 pub mod counted;
+mod portable;
+
+pub use portable::Portable;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -232,76 +235,6 @@ impl Lane for f64 {
     }
 }
 
-/// Eight lanes as a plain array: every processor has it.
-#[derive(Debug, Clone, Copy)]
-pub struct Portable([f64; LANES]);
-
-macro_rules! portable_operator {
-    ($trait:ident, $method:ident) => {
-        impl $trait for Portable {
-            type Output = Portable;
-            #[inline(always)]
-            fn $method(self, other: Portable) -> Portable {
-                Portable(std::array::from_fn(|i| $trait::$method(self.0[i], other.0[i])))
-            }
-        }
-    };
-}
-portable_operator!(Add, add);
-portable_operator!(Sub, sub);
-portable_operator!(Mul, mul);
-portable_operator!(Div, div);
-
-impl Neg for Portable {
-    type Output = Portable;
-    #[inline(always)]
-    fn neg(self) -> Portable {
-        Portable(self.0.map(|x| -x))
-    }
-}
-
-impl Lane for Portable {
-    #[inline(always)]
-    fn splat(x: f64) -> Portable {
-        Portable([x; LANES])
-    }
-    #[inline(always)]
-    fn mul_add(self, b: Portable, c: Portable) -> Portable {
-        Portable(std::array::from_fn(|i| Lane::mul_add(self.0[i], b.0[i], c.0[i])))
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Portable {
-        Portable(self.0.map(f64::sqrt))
-    }
-    #[inline(always)]
-    fn min(self, other: Portable) -> Portable {
-        Portable(std::array::from_fn(|i| Lane::min(self.0[i], other.0[i])))
-    }
-    #[inline(always)]
-    fn max(self, other: Portable) -> Portable {
-        Portable(std::array::from_fn(|i| Lane::max(self.0[i], other.0[i])))
-    }
-    #[inline(always)]
-    fn inverse_cube_root_guess(self) -> Portable {
-        Portable(self.0.map(Lane::inverse_cube_root_guess))
-    }
-}
-
-impl Lanes for Portable {
-    #[inline(always)]
-    fn load(from: &F8) -> Portable {
-        Portable(from.0)
-    }
-    #[inline(always)]
-    fn store(self, to: &mut F8) {
-        to.0 = self.0;
-    }
-    #[inline(always)]
-    fn from_lanes(numbers: [f64; LANES]) -> Portable {
-        Portable(numbers)
-    }
-}
-
 #[cfg(target_arch = "x86_64")]
 pub use x86::Avx2;
 
@@ -491,11 +424,20 @@ impl Kernel {
             // SAFETY: the processor has both features.
             return unsafe { x86::enter_avx2(work) };
         }
-        if self == Kernel::Counting {
-            return work.run::<counted::Counted>();
-        }
-        work.run::<Portable>()
+        if self == Kernel::Counting { enter_counted(work) } else { enter_portable(work) }
     }
+}
+
+// Functions of their own, as `enter_avx2` is: each is compiled once, not once for every caller.
+
+#[inline(never)]
+fn enter_portable<W: Work>(work: W) -> W::Out {
+    work.run::<Portable>()
+}
+
+#[inline(never)]
+fn enter_counted<W: Work>(work: W) -> W::Out {
+    work.run::<counted::Counted>()
 }
 
 #[cfg(test)]
