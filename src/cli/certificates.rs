@@ -68,13 +68,13 @@ fn why(cause: Cause, limits: &Limits) -> String {
 }
 
 fn figures(mesh: &Mesh, cell: usize, c: &Certificate) -> String {
-    let number = mesh.number(cell);
+    let (number, points) = (mesh.number(cell), if c.points == 1 { "point" } else { "points" });
     match c.condition.is_finite() {
         true => format!(
-            "cell {number} ({} points, face Lebesgue constant {:.1}, at nodes {:.1}, condition {:.2e})",
+            "cell {number} ({} {points}, face Lebesgue constant {:.1}, at nodes {:.1}, condition {:.2e})",
             c.points, c.lebesgue, c.inside, c.condition
         ),
-        false => format!("cell {number} ({} points, rank {})", c.points, c.rank),
+        false => format!("cell {number} ({} {points}, rank {})", c.points, c.rank),
     }
 }
 

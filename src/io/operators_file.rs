@@ -106,6 +106,7 @@ mod tests {
     use crate::cloud::{Cloud, Layout, seed};
     use crate::mesh::{links, rectangle};
     use crate::operators::Line;
+    use crate::operators::certificate::certify;
 
     struct Case {
         mesh: Mesh,
@@ -153,6 +154,21 @@ mod tests {
             };
             assert_eq!(bits(&back), bits(&stored));
         }
+    }
+
+    #[test]
+    fn certificates_stand_beside_the_matrices_for_those_who_look() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("operators.h5");
+        let case = case(Layout::Paper);
+        let needs = needs(&case.cloud);
+        let certificates = certify(&case.mesh, &Line::new(2), Sampling::Cloud(&case.cloud)).unwrap();
+        write(&path, "a", &build(&case, &needs), &certificates).unwrap();
+        let mut store = Store::read(&path, FORMAT).unwrap();
+        assert_eq!(store.indices("cell_points", &[]).unwrap(), [9; 12]);
+        // The layout of the paper on a square cell: 26.6 (design section 2).
+        assert!(store.reals("cell_face_lebesgue", &[]).unwrap().iter().all(|l| (l - 26.6).abs() < 0.01));
+        assert!(read(&path, "a", &case.blocks, &needs).unwrap().is_some());
     }
 
     #[test]

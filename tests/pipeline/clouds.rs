@@ -81,7 +81,7 @@ fn deficient_cells_are_said_stored_and_exported_and_strict_refuses_them_before_a
     let said = bench.run(&format!("run case.toml {file}"));
     assert!(said.contains("2 of 8 cells cannot carry degree 1 and have virtual points on their Gauss nodes"), "{said}");
     assert!(
-        said.contains("2 with too few points; worst: cell 3 (0 points, rank 0), cell 6 (1 points, rank 1)"),
+        said.contains("2 with too few points; worst: cell 3 (0 points, rank 0), cell 6 (1 point, rank 1)"),
         "{said}"
     );
     assert!(said.contains("classes of cells") && said.contains("6 lattice, 2 deficient"), "{said}");
@@ -108,7 +108,7 @@ fn deficient_cells_are_said_stored_and_exported_and_strict_refuses_them_before_a
 
     let message = bench.fail(2, &format!("preprocess case.toml {file} --strict"));
     assert!(message.contains("2 of 8 cells are beyond the limits (rank 4"), "{message}");
-    assert!(message.contains("cell 3 (0 points, rank 0), cell 6 (1 points, rank 1)"), "{message}");
+    assert!(message.contains("cell 3 (0 points, rank 0), cell 6 (1 point, rank 1)"), "{message}");
     assert!(message.contains("per_direction") && !bench.path("operators.h5").exists(), "{message}");
     bench.run(&format!("preprocess case.toml {file}"));
 }
