@@ -1,7 +1,6 @@
 //! `dgmpm export`: a run's snapshots for ParaView, meshio and DOLFINx.
 
 use super::pipeline::Body;
-use super::preprocess::certificates;
 use super::print::say;
 use crate::basis::Lagrange;
 use crate::cloud::Cloud;
@@ -80,11 +79,16 @@ impl Export {
     fn new(folder: &Folder) -> Result<Self> {
         let scene = Scene::load(&folder.scene(), &[])?;
         let mesh = mesh_file::read_mesh(&folder.mesh())?;
-        let cloud = cloud_file::read_cloud_of(&folder.cloud(), &mesh)?;
+        let (cloud, more) = cloud_file::read_with(&folder.cloud(), &mesh)?;
         scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
         let material = scene.material_of_cells(&mesh);
-        let body = Body { mesh, cloud, material };
-        let cell_fields = export::cell_fields(&body.mesh, &certificates(&scene, &body)?, &body.material);
+        let body = Body { mesh, cloud, virtual_points: more.virtual_points, deficient: vec![], material };
+        let certificates = match more.certificates {
+            // A run of an older version.
+            none if none.is_empty() => body.certificates(&scene)?,
+            all => all,
+        };
+        let cell_fields = export::cell_fields(&body.mesh, &certificates, &body.material);
         let (laws, basis) = (scene.build_laws(), Lagrange::new(scene.scheme.degree));
         let places = scene.places(&body.cloud);
         Ok(Self { laws, basis, places, fields: scene.export_fields(), cell_fields, out: folder.export(), body })
@@ -124,7 +128,8 @@ impl Export {
                 let mut grid = export::grid(&self.body.mesh, solution, &fields);
                 grid.cell_fields = self.cell_fields.clone();
                 vtu::write_grid(&grid_path, &grid)?;
-                vtu::write_points(&point_path, &export::points(&self.body.mesh, &self.body.cloud, solution, &fields))?;
+                let Body { mesh, cloud, virtual_points, .. } = &self.body;
+                vtu::write_points(&point_path, &export::points(mesh, cloud, virtual_points, solution, &fields))?;
                 Ok(time)
             })?;
             grids.push((time, grid_path));
