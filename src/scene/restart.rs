@@ -1,11 +1,11 @@
 //! A start from material points alone: F, v and internal variables of a cloud file, on whatever grid.
 
-use super::{Field, Given, Scene};
+use super::{Field, Given, Method, Scene};
 use crate::error::Result;
-use crate::io::grid;
+use crate::io::grid::{self, Kind};
 use crate::mesh::{Mesh, map};
 use crate::observe::Solution;
-use crate::operators::from_points;
+use crate::operators::{Limits, carry, from_points};
 use crate::state::{State, UNKNOWNS};
 use crate::step::Scheme;
 
@@ -26,7 +26,51 @@ impl Scene {
                 self.check_initial(f, v, map::position(&mesh.corners(cell), xi), mesh.number(cell))?;
             }
         }
-        Ok(State { time: self.start, ..State::pack(&scheme.operators.blocks, n, components, &cells) })
+        let mut state = State { time: self.start, ..State::pack(&scheme.operators.blocks, n, components, &cells) };
+        if !scheme.histories.is_empty() {
+            scheme.set_internal(&mut state, &self.internal_of_points(mesh, scheme, &given)?);
+        }
+        Ok(state)
+    }
+
+    /// Internal variables where the scheme has them, in the order of [`Scheme::internal_of`]: those of the same given point or
+    /// of the nearest one, never interpolated.
+    fn internal_of_points(&self, mesh: &Mesh, scheme: &Scheme, given: &Given) -> Result<Vec<f64>> {
+        // Nodes are to the cloud what virtual points are.
+        let nodes = Limits { lebesgue: 0.0, condition: 0.0, lattices: true };
+        let limits = if self.scheme.method == Method::AderDgmpm { self.limits } else { nodes };
+        let carried = carry(mesh, &scheme.operators.line, &given.cloud, &limits)?;
+        let of_law = |law: usize| {
+            let names = scheme.laws[law].internal().iter();
+            names.map(|name| self.variable_of(given, name)).collect::<Result<Vec<_>>>()
+        };
+        let columns = (0..scheme.laws.len()).map(of_law).collect::<Result<Vec<_>>>()?;
+        let mut values = Vec::new();
+        for (cell, law) in self.material_of_cells(mesh).into_iter().enumerate() {
+            for &p in &carried.source[carried.cloud.first[cell]..carried.cloud.first[cell + 1]] {
+                values.extend(columns[law].iter().map(|(values, stride, k)| values[stride * p + k]));
+            }
+        }
+        Ok(values)
+    }
+
+    /// An internal variable in the fields of a cloud file: values, numbers of a point, place among them. It is a scalar of its
+    /// name, or a component `name_11` of a tensor, as exports have it.
+    fn variable_of<'a>(&self, given: &'a Given, name: &str) -> Result<(&'a [f64], usize, usize)> {
+        let find = |name: &str, kind: Kind| given.fields.iter().find(|field| field.name == name && field.kind == kind);
+        if let Some(field) = find(name, Kind::Scalar) {
+            return Ok((&field.values, 1, 0));
+        }
+        let places = [("11", 0), ("12", 1), ("21", 3), ("22", 4), ("33", 8)];
+        let split = name.rsplit_once('_');
+        let component = split.and_then(|(stem, suffix)| {
+            let place = places.iter().find(|(known, _)| *known == suffix)?.1;
+            Some((&find(stem, Kind::Tensor)?.values[..], Kind::Tensor.components(), place))
+        });
+        component.ok_or_else(|| {
+            let what = format!("the cloud file has no internal variable `{name}`, which a law of this scene has");
+            self.error("initial.from", what, "export the run with all fields, or give laws without memory")
+        })
     }
 
     /// U, and where it is asked for the displacement, at the given points: `[point][component]`.
@@ -72,6 +116,8 @@ impl Scene {
     pub fn fields_of_points(&self, solution: &Solution) -> Vec<Field> {
         let mut fields = vec![Field::Velocity, Field::Deformation];
         fields.extend(solution.has_displacement().then_some(Field::Displacement));
+        let names = Field::NAMES.iter().map(|(_, field)| *field);
+        fields.extend(names.filter(|field| field.is_internal() && field.is_of(solution.laws)));
         fields
     }
 }

@@ -98,7 +98,8 @@ fn noise_on_a_compressed_state_does_not_grow_in_2000_steps_on_any_cloud() {
     let mesh = Grid::Squares.mesh(8);
     let run = |points: Points, degree: usize| {
         let scheme = Scheme { sources: vec![], ..scheme(&problem, &mesh, Kind::Cloud(points), degree, degree) };
-        let mut state = noisy(&problem, &mesh, &scheme, base, 1e-6);
+        // Strains of 1 %: what clouds sample of P(F) is not linear.
+        let mut state = noisy(&problem, &mesh, &scheme, base, 1e-2);
         let (mut first, mut last) = (0.0, 0.0);
         walk(&scheme, degree, &mut state, 1.0 / 8.0, 2000, |step, state| {
             last = distance(&problem, &scheme, state, base);
@@ -107,7 +108,7 @@ fn noise_on_a_compressed_state_does_not_grow_in_2000_steps_on_any_cloud() {
             }
         });
         println!("noise {points:?} S{degree}: {first:.2e} after the first step, {last:.2e} after 2000");
-        assert!(first > 1e-7 && last <= first, "{points:?} S{degree}: {first:e} {last:e}");
+        assert!(first > 1e-3 && last <= first, "{points:?} S{degree}: {first:e} {last:e}");
     };
     std::thread::scope(|scope| {
         for half in [&ALL[..3], &ALL[3..]] {

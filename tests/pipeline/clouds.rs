@@ -201,3 +201,44 @@ fn a_start_from_a_cloud_says_what_its_file_lacks() {
         assert!((value - exact).abs() < 1e-13 * exact.abs().max(1.0), "{e}: {value}");
     }
 }
+
+#[test]
+fn internal_variables_of_points_go_along_bit_for_bit_and_a_file_without_them_is_refused() {
+    let bench = Bench::new();
+    let plastic = SCENE.replace("\"neo-hookean\"", "\"j2\"\nyield_stress = 4e8\nhardening = 1e10");
+    bench.write("case.toml", &plastic);
+    bench.run("run case.toml");
+    bench.run("export runs/case --format vtu");
+    let last = bench.last("runs/case");
+    let from = plastic
+        .replace("velocity = [\"-200\", \"0\"]", "from = \"cloud\"")
+        .replace("end = 1e-4", "start = 1e-4\nend = 1.0001e-4")
+        .replace("at = [5e-5, 1e-4]", "every_steps = 1");
+    let file = format!("runs/case/export/points_{:06}.vtu", last.step);
+    let scene = format!("{from}[cloud]\nlayout = \"file\"\npath = \"{file}\"\n");
+    bench.write("on.toml", &scene);
+    bench.run("run on.toml");
+    // The same points in the same cells: five variables at each, and some of it has yielded.
+    let first = &bench.snapshots("runs/on")[0];
+    assert_eq!(bits(&first.internal), bits(&last.internal));
+    assert!(last.internal.len() == 5 * 4 * 8 && last.internal.iter().any(|x| *x > 0.0 && *x < 0.5));
+    // On another grid, and at nodes: each value is that of some point.
+    for set in ["mesh.rectangle.cells=[5,3]", "scheme.method=rk-dgfem"] {
+        bench.run(&format!("run on.toml --force --set {set}"));
+        let first = &bench.snapshots("runs/on")[0];
+        let known: Vec<u64> = bits(&last.internal);
+        assert!(!first.internal.is_empty() && bits(&first.internal).iter().all(|x| known.contains(x)), "{set}");
+    }
+    // The run folder holds them, too.
+    bench.run("run on.toml --force");
+    bench.run("run runs/on/scene.toml --out runs/same");
+    assert_eq!(bits(&bench.snapshots("runs/same")[0].internal), bits(&last.internal));
+    bench.write("elastic.toml", SCENE);
+    bench.run("run elastic.toml");
+    bench.run("export runs/elastic --format vtu");
+    let elastic = std::fs::read_dir(bench.path("runs/elastic/export")).unwrap().map(|f| f.unwrap().file_name());
+    let points = elastic.map(|f| f.into_string().unwrap()).filter(|f| f.starts_with("points_0")).max().unwrap();
+    bench.write("on.toml", scene.replace(&file, &format!("runs/elastic/export/{points}")));
+    let message = bench.fail(2, "run on.toml --force");
+    assert!(message.contains("no internal variable `"), "{message}");
+}
