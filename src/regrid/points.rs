@@ -1,0 +1,1 @@
+//! Where material points go at a regrid.
