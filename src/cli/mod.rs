@@ -7,6 +7,7 @@ mod pipeline;
 mod preprocess;
 mod print;
 mod progress;
+mod rebuild;
 mod run;
 mod seed;
 mod solve;

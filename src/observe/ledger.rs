@@ -21,7 +21,7 @@ const COLUMNS: [&str; 11] = [
 ];
 
 /// Columns of the balance, behind the others; all but the last cumulated since the start of the run.
-const BALANCE: [&str; 7] = [
+const BALANCE: [&str; 8] = [
     "boundary_work",
     "source_work",
     "flux_dissipation",
@@ -29,6 +29,7 @@ const BALANCE: [&str; 7] = [
     "curl_dissipation",
     "remainder",
     "angular_momentum",
+    "regrid_dissipation",
 ];
 
 /// Writes a row each time it looks. Energies in J, momenta in kg m/s and kg m^2/s, per metre of thickness.
@@ -59,6 +60,7 @@ fn columns(balance: &Balance, totals: &Totals) -> [f64; BALANCE.len()] {
         balance.curl_dissipation,
         balance.remainder(totals.energy()),
         totals.angular_momentum.unwrap_or(f64::NAN),
+        balance.regrid_dissipation,
     ]
 }
 

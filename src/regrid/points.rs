@@ -1,1 +1,236 @@
-//! Where material points go at a regrid.
+//! Where material points go at a regrid: they stay where they are in X wherever the new cells can carry them, and so do
+//! their internal variables. New points take those of the nearest old point of their material; nothing is interpolated.
+
+use super::Grid;
+use crate::cloud::{Cloud, Locator, locate::on_lattice};
+use crate::error::Error;
+use crate::mesh::{Mesh, map};
+use crate::operators::certificate::{Certificate, certify};
+use crate::operators::{Line, Sampling};
+use rayon::prelude::*;
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
+
+names! {
+    /// What becomes of the points of new cells.
+    Policy {
+        /// They stay where they are; a cell that cannot carry them gets points at its Gauss nodes instead.
+        Keep = "keep",
+        /// As keep, but a cell with too few points gets more of the layout, and one with too many is thinned to it.
+        Enrich = "enrich",
+        /// Cells that are new get the layout of the scene: congruent cells share their matrices.
+        Layout = "layout",
+    }
+}
+
+/// The points of the new grid.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Placed {
+    /// The points.
+    pub cloud: Cloud,
+    /// For each the old point that it is, or that is nearest in X among those of its material.
+    pub source: Vec<usize>,
+    /// Whether it is that point itself.
+    pub kept: Vec<bool>,
+    /// Old points that lie outside of the new mesh, and are gone.
+    pub outside: usize,
+}
+
+/// What new cells are to carry.
+#[derive(Debug, Clone, Copy)]
+pub struct Demand<'a> {
+    /// The nodal basis.
+    pub line: &'a Line,
+    /// What becomes of the points.
+    pub policy: Policy,
+    /// Points of the scene's layout in all cells of the new mesh.
+    pub fresh: &'a Cloud,
+    /// Whether the method samples at the points; else any points will do.
+    pub samples: bool,
+}
+
+/// Face Lebesgue constants that a cell may have, N = 0..6 (design section 8; beyond N = 4 by the same factor 2.5).
+const LEBESGUE: [f64; 7] = [10.0, 10.0, 30.0, 60.0, 150.0, 375.0, 940.0];
+/// Condition number of the fit that a cell may have: eleven digits are left.
+const CONDITION: f64 = 1e5;
+
+/// A point of a new cell.
+#[derive(Debug, Clone, Copy)]
+struct Seat {
+    xi: [f64; 2],
+    /// The old point that it is.
+    old: Option<usize>,
+}
+
+/// Places the points of `cloud` in the new grid; `same` names the old cell that a new one equals.
+///
+/// # Errors
+/// A material without any old point.
+pub fn place(
+    old: &Grid,
+    cloud: &Cloud,
+    new: &Grid,
+    same: &[Option<usize>],
+    demand: &Demand,
+) -> Result<Placed, Error> {
+    let (mut seats, outside) = match demand.policy {
+        Policy::Layout => (of_layout(cloud, same, demand.fresh), 0),
+        Policy::Keep | Policy::Enrich => stay(old, cloud, new, same),
+    };
+    // A cell whose points are as they were is not looked at: what it could carry it can.
+    let changed: Vec<bool> =
+        seats.iter().zip(same).map(|(seats, same)| same.is_none_or(|twin| cloud.of(twin).len() != seats.len())).collect();
+    if demand.samples {
+        if demand.policy == Policy::Enrich {
+            enrich(&mut seats, &changed, new, demand)?;
+        }
+        if demand.policy != Policy::Layout {
+            let poor = poor(&seats, &changed, new, demand.line)?;
+            for cell in poor {
+                seats[cell] = demand.line.nodes().into_iter().map(|xi| Seat { xi, old: None }).collect();
+            }
+        }
+    }
+    finish(old, cloud, new, &seats, outside)
+}
+
+/// Copies keep their points; other cells have those of the layout.
+fn of_layout(cloud: &Cloud, same: &[Option<usize>], fresh: &Cloud) -> Vec<Vec<Seat>> {
+    let of = |(cell, same): (usize, &Option<usize>)| match same {
+        Some(twin) => own(cloud, *twin),
+        None => fresh.of(cell).iter().map(|&xi| Seat { xi, old: None }).collect(),
+    };
+    same.iter().enumerate().map(of).collect()
+}
+
+/// The points of a cell that stays, with their parent coordinates to the bit.
+fn own(cloud: &Cloud, cell: usize) -> Vec<Seat> {
+    let numbered = cloud.of(cell).iter().zip(cloud.first[cell]..);
+    numbered.map(|(&xi, point)| Seat { xi, old: Some(point) }).collect()
+}
+
+/// All points where they are in X; how many lie outside of the new mesh.
+fn stay(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>]) -> (Vec<Vec<Seat>>, usize) {
+    let mut stays = vec![false; old.mesh.cells.len()];
+    let mut seats: Vec<Vec<Seat>> = vec![vec![]; same.len()];
+    for (cell, twin) in same.iter().enumerate().filter_map(|(cell, same)| Some((cell, (*same)?))) {
+        stays[twin] = true;
+        seats[cell] = own(cloud, twin);
+    }
+    let moving: Vec<(usize, usize)> = (0..stays.len())
+        .filter(|&cell| !stays[cell])
+        .flat_map(|cell| (cloud.first[cell]..cloud.first[cell + 1]).map(move |point| (cell, point)))
+        .collect();
+    if moving.is_empty() {
+        return (seats, 0);
+    }
+    let locator = Locator::new(new.mesh);
+    let find = |&(cell, point): &(usize, usize)| {
+        let found = locator.find(map::position(&old.mesh.corners(cell), cloud.xi[point]))?;
+        // On an edge between two materials a point stays with its own: the cell that has it is the lowest there.
+        (new.material[found.0] == old.material[cell]).then_some((found, point))
+    };
+    let found: Vec<_> = moving.par_iter().map(find).collect();
+    for ((cell, xi), point) in found.iter().flatten() {
+        seats[*cell].push(Seat { xi: xi.map(on_lattice), old: Some(*point) });
+    }
+    (seats, found.iter().filter(|found| found.is_none()).count())
+}
+
+/// Changed cells whose points cannot carry Q_N.
+fn poor(seats: &[Vec<Seat>], changed: &[bool], new: &Grid, line: &Line) -> Result<Vec<usize>, Error> {
+    // Of the others one point is enough to be no work.
+    let look = |cell: usize| if changed[cell] { &seats[cell][..] } else { &[] };
+    let mut cloud = Cloud { first: vec![0], xi: vec![] };
+    for cell in 0..seats.len() {
+        cloud.xi.extend(look(cell).iter().map(|seat| seat.xi));
+        cloud.first.push(cloud.xi.len());
+    }
+    let certificates = certify(new.mesh, line, Sampling::Cloud(&cloud))?;
+    let cannot = |cell: &usize| changed[*cell] && !carries(&certificates[*cell], line.m);
+    Ok((0..seats.len()).filter(cannot).collect())
+}
+
+fn carries(certificate: &Certificate, m: usize) -> bool {
+    certificate.points >= m * m
+        && certificate.rank == m * m
+        && certificate.lebesgue <= LEBESGUE[(m - 1).min(LEBESGUE.len() - 1)]
+        && certificate.condition <= CONDITION
+}
+
+/// Adds points of the layout where there are too few, thins to the nearest ones of the layout where there are too many.
+fn enrich(seats: &mut [Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand) -> Result<(), Error> {
+    let gap = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    for cell in poor(seats, changed, new, demand.line)? {
+        // Half of the spacing of the layout: where a point is that near, another would only be its double.
+        let near = 0.5 / (demand.fresh.of(cell).len() as f64).sqrt();
+        for &xi in demand.fresh.of(cell) {
+            if seats[cell].iter().all(|seat| gap(seat.xi, xi) > near) {
+                seats[cell].push(Seat { xi, old: None });
+            }
+        }
+    }
+    for cell in (0..seats.len()).filter(|&cell| changed[cell]) {
+        let (wanted, own) = (demand.fresh.of(cell), &seats[cell]);
+        if own.len() <= 2 * wanted.len().max(demand.line.m * demand.line.m) {
+            continue;
+        }
+        let nearest = |xi: &[f64; 2]| {
+            (0..own.len()).min_by(|&a, &b| gap(own[a].xi, *xi).total_cmp(&gap(own[b].xi, *xi))).unwrap_or(0)
+        };
+        let mut chosen: Vec<usize> = wanted.iter().map(nearest).collect();
+        chosen.sort_unstable();
+        chosen.dedup();
+        let thinned: Vec<Seat> = chosen.into_iter().map(|k| own[k]).collect();
+        let cloud = Cloud { first: vec![0, thinned.len()], xi: thinned.iter().map(|seat| seat.xi).collect() };
+        let corners = new.mesh.corners(cell);
+        let one = Mesh { nodes: corners.to_vec(), cells: vec![[0, 1, 2, 3]], ..Mesh::default() };
+        if carries(&certify(&one, demand.line, Sampling::Cloud(&cloud))?[0], demand.line.m) {
+            seats[cell] = thinned;
+        }
+    }
+    Ok(())
+}
+
+/// Fills in the nearest old points of those that are new.
+fn finish(old: &Grid, cloud: &Cloud, new: &Grid, seats: &[Vec<Seat>], outside: usize) -> Result<Placed, Error> {
+    let mut out = Placed { cloud: Cloud { first: vec![0], xi: vec![] }, outside, ..Placed::default() };
+    let is_new = |cell: &usize| seats[*cell].iter().any(|seat| seat.old.is_none());
+    let trees = if (0..seats.len()).any(|cell| is_new(&cell)) { trees(old, cloud) } else { vec![] };
+    let sources = |cell: usize| -> Result<Vec<usize>, Error> {
+        let corners = new.mesh.corners(cell);
+        let source = |seat: &Seat| {
+            let near = || trees.get(new.material[cell])?.nearest_neighbor(map::position(&corners, seat.xi));
+            seat.old.or_else(|| near().map(|point| point.data)).ok_or_else(|| {
+                let what = format!("cell {} has a material that no old point has", new.mesh.number(cell));
+                Error::input(what, "give a mesh with the groups of the old one")
+            })
+        };
+        seats[cell].iter().map(source).collect()
+    };
+    let sources = (0..seats.len()).into_par_iter().map(sources).collect::<Result<Vec<_>, Error>>()?;
+    for (seats, sources) in seats.iter().zip(sources) {
+        out.source.extend(sources);
+        out.kept.extend(seats.iter().map(|seat| seat.old.is_some()));
+        out.cloud.xi.extend(seats.iter().map(|seat| seat.xi));
+        out.cloud.first.push(out.cloud.xi.len());
+    }
+    Ok(out)
+}
+
+/// The old points of each material.
+fn trees(old: &Grid, cloud: &Cloud) -> Vec<RTree<GeomWithData<[f64; 2], usize>>> {
+    let mut points = vec![vec![]; old.material.iter().max().map_or(0, |last| last + 1)];
+    for cell in 0..old.mesh.cells.len() {
+        let corners = old.mesh.corners(cell);
+        let numbered = cloud.of(cell).iter().zip(cloud.first[cell]..);
+        points[old.material[cell]].extend(numbered.map(|(&xi, k)| GeomWithData::new(map::position(&corners, xi), k)));
+    }
+    points.into_iter().map(RTree::bulk_load).collect()
+}
+
+/// Internal variables of new points, `[point][variable]` ragged: `first_old` gives where those of each old point begin
+/// (length: points + 1).
+pub fn histories(placed: &Placed, first_old: &[usize], internal: &[f64]) -> Vec<f64> {
+    placed.source.iter().flat_map(|&old| &internal[first_old[old]..first_old[old + 1]]).copied().collect()
+}

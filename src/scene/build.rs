@@ -8,6 +8,7 @@ use crate::boundary::{self, Data};
 use crate::cloud::{self, Cloud, seed};
 use crate::error::{Error, Place, Result};
 use crate::exact::ExactForce;
+use crate::io::snapshot::Snapshot;
 use crate::io::{cloud_file, gmsh, mesh_file, points, store};
 use crate::lane::Kernel;
 use crate::material::Law;
@@ -186,6 +187,9 @@ impl Scene {
     /// # Errors
     /// A value that is not finite, or J <= 0, with its place in the mesh.
     pub fn initial_state(&self, mesh: &Mesh, scheme: &Scheme) -> Result<State> {
+        if let Some(path) = &self.initial.snapshot {
+            return self.state_of_snapshot(&self.resolve(path), scheme);
+        }
         let (basis, n) = (&scheme.operators.line.basis, scheme.operators.nodes());
         let components = if self.wants_displacement() { UNKNOWNS + 2 } else { UNKNOWNS };
         let mut cells = vec![0.0; mesh.cells.len() * components * n];
@@ -205,6 +209,29 @@ impl Scene {
             }
         }
         Ok(State::pack(&scheme.operators.blocks, n, components, &cells))
+    }
+
+    /// The state of a snapshot, with its time and step.
+    fn state_of_snapshot(&self, path: &Path, scheme: &Scheme) -> Result<State> {
+        let snapshot = Snapshot::read(path)?;
+        let (cells, n) = (scheme.operators.blocks.slot.len(), scheme.operators.nodes());
+        let fail = |what: String, remedy: &str| self.error("initial.snapshot", what, remedy);
+        if snapshot.cells() != cells || snapshot.degree != scheme.operators.degree {
+            let (given, degree) = (snapshot.cells(), snapshot.degree);
+            let what = format!("the snapshot has {given} cells of degree {degree}, the scene {cells} of {}", scheme.operators.degree);
+            return Err(fail(what, "give the mesh of that run, or bring it over by `dgmpm regrid`"));
+        }
+        if snapshot.time >= self.end {
+            let what = format!("the snapshot is at {:e} s, and the run ends at {:e} s", snapshot.time, self.end);
+            return Err(fail(what, "give a later time.end"));
+        }
+        let components = if self.wants_displacement() { UNKNOWNS + 2 } else { UNKNOWNS };
+        if components > UNKNOWNS && snapshot.displacement.is_empty() {
+            let what = "an output asks for the displacement, which the snapshot lacks".to_owned();
+            return Err(fail(what, "leave out the field `displacement` and the balance of the ledger"));
+        }
+        let state = State::pack(&scheme.operators.blocks, n, components, &snapshot.unknowns(components));
+        Ok(State { time: snapshot.time, step: snapshot.step, ..state })
     }
 
     fn check_initial(&self, f: [f64; 4], v: [f64; 2], x: [f64; 2], cell: u64) -> Result<()> {
@@ -320,12 +347,17 @@ fn samples(output: &Output) -> Option<Samples> {
 }
 
 fn schedule(output: &Output) -> Schedule {
-    let when = match &output.when {
+    schedule_of(&output.when, output.exact_times)
+}
+
+/// When something is done.
+pub fn schedule_of(when: &When, exact: bool) -> Schedule {
+    let when = match when {
         When::At(times) => crate::observe::When::At(times.clone()),
         When::Every(interval) => crate::observe::When::Every(*interval),
         When::EverySteps(steps) => crate::observe::When::EverySteps(*steps),
     };
-    Schedule::new(when, output.exact_times)
+    Schedule::new(when, exact)
 }
 
 /// The registry of boundary conditions.

@@ -7,6 +7,7 @@
 pub mod build;
 mod exact;
 mod expression;
+pub mod grids;
 mod groups;
 mod laws;
 mod names;
@@ -15,6 +16,7 @@ mod outputs;
 mod portable;
 mod read;
 mod reader;
+pub mod regrid;
 mod sets;
 mod suggest;
 
@@ -61,6 +63,8 @@ pub struct Scene {
     pub end: f64,
     /// What is recorded when.
     pub outputs: Vec<Output>,
+    /// When the run gets another grid.
+    pub regrids: Vec<regrid::Regrid>,
     #[serde(skip)]
     origin: Origin,
 }
@@ -121,6 +125,8 @@ pub struct Initial {
     pub velocity: [Expression; 2],
     /// F11, F12, F21, F22; default the identity.
     pub deformation: [Expression; 4],
+    /// A snapshot that the run goes on from, as written in the scene; nothing else then counts.
+    pub snapshot: Option<PathBuf>,
 }
 
 /// The condition on a group of boundary edges.

@@ -1,0 +1,358 @@
+//! Another grid in mid-run: `[[regrid]]`. Mesh, points, operators and scheme are made anew and the state is brought over;
+//! time and step go on. Where grid and points are the same nothing is touched, so that no bit changes.
+
+use super::pipeline::{self, Body};
+use super::print::say;
+use crate::error::{Error, Result};
+use crate::io::csv::Table;
+use crate::io::snapshot::GridFiles;
+use crate::io::{cloud_file, hash, mesh_file, operators_file};
+use crate::lane::Kernel;
+use crate::observe::{NewGrid, Schedule, View};
+use crate::operators::{Blocks, Line, Operators, Stored};
+use crate::regrid::points::{Demand, Placed, Policy, place};
+use crate::regrid::{self, Field, Grid, Transfer};
+use crate::run::{Folder, Pause};
+use crate::scene::grids::Present;
+use crate::scene::{Method, Scene, build};
+use crate::state::{State, UNKNOWNS};
+use crate::step::{Scheme, Totals};
+use std::collections::{HashMap, VecDeque};
+use std::time::Instant;
+
+/// Grids whose matrices are kept in memory, so that grids that alternate are built once.
+const KEPT: usize = 4;
+
+/// Names of the phases of a regrid, in order; `regrid.csv` has their seconds.
+pub const PHASES: [&str; 7] = ["mesh", "transfer", "points", "links", "matrices", "scheme", "files"];
+
+/// Columns of `regrid.csv` before the phases. Energies in J/m, areas in m^2.
+const COLUMNS: [&str; 19] = [
+    "step", "t", "rule", "cells_before", "cells", "copied", "points_before", "points", "points_kept", "points_outside",
+    "kinetic_before", "kinetic", "strain_before", "strain", "momentum_1_change", "momentum_2_change", "deformation_change",
+    "transfer_error", "uncovered",
+];
+
+/// A grid with everything that is built on it.
+pub struct Built {
+    /// Mesh and points.
+    pub body: Body,
+    /// The scheme.
+    pub scheme: Scheme,
+    /// Its files in the run folder.
+    pub files: GridFiles,
+}
+
+/// The rules of a scene, and what has come of them.
+pub struct Regrids<'a> {
+    scene: &'a Scene,
+    folder: &'a Folder,
+    kernel: Kernel,
+    schedules: Vec<Schedule>,
+    /// How often each rule has fired.
+    fired: Vec<usize>,
+    /// The rule that fired last, and the mesh that it asks for.
+    due: Option<(usize, Result<crate::mesh::Mesh>)>,
+    material: Vec<usize>,
+    cloud: crate::cloud::Cloud,
+    /// Matrices by key, the latest last.
+    cache: VecDeque<(String, Stored)>,
+    files: HashMap<String, GridFiles>,
+    table: Option<Table>,
+}
+
+impl Pause for Regrids<'_> {
+    fn stop(&self, time: f64) -> Option<f64> {
+        self.schedules.iter().filter_map(|schedule| schedule.stop(time)).reduce(f64::min)
+    }
+
+    fn due(&mut self, view: &View) -> bool {
+        let (step, time) = (view.state.step, view.state.time);
+        let present = Present { view, cloud: &self.cloud, material: &self.material };
+        for rule in 0..self.schedules.len() {
+            if self.schedules[rule].due(step, time, view.dt) && self.scene.regrid_is_due(rule, &present) {
+                let mesh = self.scene.regrid_mesh(rule, self.fired[rule], &present);
+                self.fired[rule] += 1;
+                self.due = Some((rule, mesh));
+            }
+        }
+        self.due.is_some()
+    }
+}
+
+impl<'a> Regrids<'a> {
+    /// The rules of a scene at the start of a run on `first`.
+    pub fn new(scene: &'a Scene, folder: &'a Folder, kernel: Kernel, first: &Body, start: &State) -> Result<Self> {
+        let mut schedules: Vec<Schedule> =
+            scene.regrids.iter().map(|rule| build::schedule_of(&rule.when, rule.exact_times)).collect();
+        // `every` and `every_steps` count from the start, whose grid is that of [mesh]; `at` may name it.
+        for (schedule, rule) in schedules.iter_mut().zip(&scene.regrids) {
+            if !matches!(rule.when, crate::scene::When::At(_)) && rule.criteria == Default::default() {
+                schedule.due(start.step, start.time, 0.0);
+            }
+        }
+        let table = if scene.regrids.is_empty() { None } else { Some(Table::create(&folder.regrids(), &columns())?) };
+        let files = HashMap::from([(key_of_files(first), GridFiles::default())]);
+        let fired = vec![0; schedules.len()];
+        let (material, cloud) = (first.material.clone(), first.cloud.clone());
+        Ok(Self { scene, folder, kernel, schedules, fired, due: None, material, cloud, cache: VecDeque::new(), files, table })
+    }
+
+    /// Puts the grid that is due in place of `old`, and the state on it; totals before and after, none where it is the same.
+    ///
+    /// # Errors
+    /// A mesh that cannot be made or does not fit the body.
+    pub fn rebuild(&mut self, old: &mut Built, state: &mut State) -> Result<Option<[Totals; 2]>> {
+        let Some((rule, mesh)) = self.due.take() else { return Ok(None) };
+        let mut clock = Clock::new();
+        let mesh = mesh?;
+        clock.lap(0);
+        let material = self.scene.material_of_cells(&mesh);
+        let (from, to) = (grid(&old.body.mesh, &old.body.material), grid(&mesh, &material));
+        let n = old.scheme.operators.nodes();
+        let unknowns = state.unpack(&old.scheme.operators.blocks, n);
+        let scale = scale(&old.scheme);
+        let basis = &old.scheme.operators.line.basis;
+        let field = Field { basis, components: state.components, u: &unknowns, scale: &scale };
+        let mut moved = regrid::transfer(&from, &to, &field)?;
+        clock.lap(1);
+        let policy = self.scene.regrids[rule].points;
+        let placed = place_points(self.scene, &from, &old.body.cloud, &to, &moved, policy, &old.scheme)?;
+        clock.lap(2);
+        if mesh == old.body.mesh && placed.cloud == old.body.cloud {
+            say(format!("regrid at step {}, t = {:.6e} s: the grid is the same", state.step, state.time));
+            return Ok(None);
+        }
+        let body = Body { mesh, cloud: placed.cloud.clone(), material };
+        let links = self.scene.links(&body.mesh)?;
+        clock.lap(3);
+        let operators = self.operators(&body, &links)?;
+        clock.lap(4);
+        regrid::curl_free(&operators, state.components, &moved.same, &mut moved.u);
+        let scheme = pipeline::scheme(self.scene, &body, operators, self.kernel);
+        let new = State::pack(&scheme.operators.blocks, n, state.components, &moved.u);
+        let new = State { time: state.time, step: state.step, ..new };
+        let totals = [old.scheme.totals(state), scheme.totals(&new)];
+        clock.lap(5);
+        let files = self.write(&body, state.step)?;
+        clock.lap(6);
+        *state = new;
+        (self.material, self.cloud) = (body.material.clone(), body.cloud.clone());
+        let built = Built { body, scheme, files };
+        let result = Outcome { rule, old, new: &built, state, moved: &moved, placed: &placed, totals: &totals };
+        result.print(&clock);
+        if let Some(table) = &mut self.table {
+            table.push(&result.row(&clock))?;
+            table.flush()?;
+        }
+        *old = built;
+        Ok(Some(totals))
+    }
+
+    /// The operators, their matrices from memory where they have been built before.
+    fn operators(&mut self, body: &Body, links: &[[crate::mesh::Link; 4]]) -> Result<Operators> {
+        let needs = self.scene.needs(&body.cloud);
+        let (line, blocks) = (Line::new(needs.degree), Blocks::new(&body.material, links));
+        let key = operators_file::key(&body.mesh, &self.scene.periodic_groups(&body.mesh), &body.material, &needs);
+        let known = self.cache.iter().position(|(known, _)| *known == key).and_then(|k| self.cache.remove(k));
+        let stored = match known {
+            Some((_, stored)) => stored,
+            None => Stored::build(&body.mesh, &blocks, &line, &needs)?,
+        };
+        self.cache.push_back((key, stored.clone()));
+        if self.cache.len() > KEPT {
+            self.cache.pop_front();
+        }
+        Ok(Operators::assemble(&body.mesh, line, blocks, &needs, stored))
+    }
+
+    /// Writes mesh and points beside those of the start, each grid once.
+    fn write(&mut self, body: &Body, step: usize) -> Result<GridFiles> {
+        let key = key_of_files(body);
+        if let Some(files) = self.files.get(&key) {
+            return Ok(files.clone());
+        }
+        let files = GridFiles::after(step);
+        mesh_file::write_mesh(&self.folder.root.join(&files.mesh), &body.mesh)?;
+        cloud_file::write_cloud(&self.folder.root.join(&files.cloud), &body.cloud, &body.mesh)?;
+        self.files.insert(key, files.clone());
+        Ok(files)
+    }
+}
+
+fn columns() -> Vec<&'static str> {
+    [&COLUMNS[..], &PHASES[..]].concat()
+}
+
+fn key_of_files(body: &Body) -> String {
+    hash::of_mesh(&body.mesh) + &hash::of_cloud(&body.cloud)
+}
+
+fn grid<'a>(mesh: &'a crate::mesh::Mesh, material: &'a [usize]) -> Grid<'a> {
+    Grid { mesh, material }
+}
+
+/// The weights of the standard error: |F|^2 + |v|^2 / c_p^2 with the speed of the unstrained material.
+pub fn scale(scheme: &Scheme) -> Vec<[f64; 8]> {
+    let of = |law: &crate::material::Law| {
+        let [c_p, _] = law.largest_speeds([1.0, 0.0, 0.0, 1.0]);
+        let p = (law.density() * c_p).powi(-2);
+        [1.0, 1.0, 1.0, 1.0, p, p, 0.0, 0.0]
+    };
+    scheme.laws.iter().map(of).collect()
+}
+
+/// Places the points on the new grid.
+pub fn place_points(
+    scene: &Scene,
+    from: &Grid,
+    cloud: &crate::cloud::Cloud,
+    to: &Grid,
+    moved: &Transfer,
+    policy: Policy,
+    scheme: &Scheme,
+) -> Result<Placed> {
+    let fresh = match policy {
+        Policy::Keep => crate::cloud::Cloud::default(),
+        Policy::Enrich | Policy::Layout => scene.build_cloud(to.mesh)?,
+    };
+    let samples = scene.scheme.method == Method::AderDgmpm;
+    let demand = Demand { line: &scheme.operators.line, policy, fresh: &fresh, samples };
+    place(from, cloud, to, &moved.same, &demand)
+}
+
+/// A regrid in numbers.
+struct Outcome<'a> {
+    rule: usize,
+    old: &'a Built,
+    new: &'a Built,
+    state: &'a State,
+    moved: &'a Transfer,
+    placed: &'a Placed,
+    totals: &'a [Totals; 2],
+}
+
+impl Outcome<'_> {
+    fn copied(&self) -> usize {
+        self.moved.same.iter().flatten().count()
+    }
+
+    /// The error in the standard measure: over sqrt(int |F - 1|^2 + |v|^2 / c_p^2).
+    fn error(&self) -> f64 {
+        let (scheme, u) = (&self.new.scheme, &self.moved.u);
+        let (n, scale) = (scheme.operators.nodes(), scale(scheme));
+        let mut sum = 0.0;
+        for (cell, u) in u.chunks_exact(self.state.components * n).enumerate() {
+            let (block, lane) = scheme.operators.blocks.slot[cell];
+            for a in 0..n {
+                let mass = scheme.operators.geometry.mass[block * n + a].0[lane];
+                for (k, scale) in scale[self.new.body.material[cell]].iter().enumerate().take(UNKNOWNS) {
+                    let rest = if k == 0 || k == 3 { 1.0 } else { 0.0 };
+                    sum += mass * scale * (u[k * n + a] - rest).powi(2);
+                }
+            }
+        }
+        if sum > 0.0 { self.moved.error / sum.sqrt() } else { self.moved.error }
+    }
+
+    fn row(&self, clock: &Clock) -> Vec<f64> {
+        let [before, after] = self.totals;
+        let change = |k: usize| after.momentum[k] - before.momentum[k];
+        let deformation = before.deformation.iter().zip(after.deformation).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let count = |k: usize| k as f64;
+        let mut row = vec![
+            count(self.state.step),
+            self.state.time,
+            count(self.rule),
+            count(self.old.body.mesh.cells.len()),
+            count(self.new.body.mesh.cells.len()),
+            count(self.copied()),
+            count(self.old.body.cloud.len()),
+            count(self.placed.cloud.len()),
+            count(self.placed.kept.iter().filter(|kept| **kept).count()),
+            count(self.placed.outside),
+            before.kinetic,
+            after.kinetic,
+            before.strain,
+            after.strain,
+            change(0),
+            change(1),
+            deformation,
+            self.error(),
+            self.moved.uncovered[0] + self.moved.uncovered[1],
+        ];
+        row.extend(clock.seconds);
+        row
+    }
+
+    fn print(&self, clock: &Clock) {
+        let (state, [before, after]) = (self.state, self.totals);
+        let how = if self.moved.structured { "lines" } else { "clipping" };
+        say(format!(
+            "regrid at step {}, t = {:.6e} s: {} -> {} cells ({} copied, by {how}), {} -> {} points ({} kept)",
+            state.step,
+            state.time,
+            self.old.body.mesh.cells.len(),
+            self.new.body.mesh.cells.len(),
+            self.copied(),
+            self.old.body.cloud.len(),
+            self.placed.cloud.len(),
+            self.placed.kept.iter().filter(|kept| **kept).count(),
+        ));
+        say(format!(
+            "  error {:.3e}; kinetic {:.9e} -> {:.9e} J/m, strain {:.9e} -> {:.9e} J/m, momentum {:+.1e}, {:+.1e} kg/s",
+            self.error(),
+            before.kinetic,
+            after.kinetic,
+            before.strain,
+            after.strain,
+            after.momentum[0] - before.momentum[0],
+            after.momentum[1] - before.momentum[1],
+        ));
+        if self.moved.uncovered != [0.0; 2] {
+            let [new, old] = self.moved.uncovered;
+            say(format!(
+                "  the grids differ at their boundary: {new:.3e} m^2 of the new one filled, {old:.3e} m^2 of the old one left out"
+            ));
+        }
+        if self.placed.outside > 0 {
+            say(format!("  {} points lie outside of the new mesh, and are gone with their histories", self.placed.outside));
+        }
+        let phases: Vec<String> = PHASES.iter().zip(clock.seconds).map(|(name, s)| format!("{name} {s:.4}")).collect();
+        say(format!("  seconds: {}", phases.join(", ")));
+    }
+}
+
+/// Seconds of the phases.
+struct Clock {
+    last: Instant,
+    seconds: [f64; PHASES.len()],
+}
+
+impl Clock {
+    fn new() -> Self {
+        Self { last: Instant::now(), seconds: [0.0; PHASES.len()] }
+    }
+
+    fn lap(&mut self, phase: usize) {
+        self.seconds[phase] = self.last.elapsed().as_secs_f64();
+        self.last = Instant::now();
+    }
+}
+
+impl Built {
+    /// What observers are told.
+    pub fn news(&self) -> NewGrid<'_> {
+        NewGrid { mesh: &self.body.mesh, material: &self.body.material, files: &self.files }
+    }
+}
+
+/// An error that names the regrid.
+pub fn at_step(error: Error, state: &State) -> Error {
+    match error {
+        Error::Input { what, place, remedy } => {
+            Error::Input { what: format!("regrid at step {}, t = {:.6e} s: {what}", state.step, state.time), place, remedy }
+        }
+        other => other,
+    }
+}
