@@ -6,13 +6,13 @@ use super::print::say;
 use crate::basis::Lagrange;
 use crate::error::{Error, Result};
 use crate::io::grid::Field as Values;
-use crate::io::snapshot::Snapshot;
+use crate::io::snapshot::{GridFiles, Snapshot};
 use crate::io::{cloud_file, mesh_file, pvd, snapshot, vtu, xdmf};
 use crate::material::Law;
 use crate::observe::{Field, Solution, export};
 use crate::run::Folder;
 use crate::scene::Scene;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Arguments.
 #[derive(Debug, clap::Args)]
@@ -41,12 +41,19 @@ impl std::fmt::Display for Format {
 
 /// What all snapshots of a run share.
 struct Export {
-    body: Body,
+    folder: Folder,
+    scene: Scene,
     laws: Vec<Law>,
     basis: Lagrange,
     fields: Vec<Field>,
-    cell_fields: Vec<Values>,
     out: PathBuf,
+}
+
+/// A grid of the run.
+struct Sheet {
+    files: GridFiles,
+    body: Body,
+    cell_fields: Vec<Values>,
 }
 
 /// Runs it.
@@ -76,24 +83,43 @@ pub fn run(args: &Args) -> Result<()> {
 impl Export {
     fn new(folder: &Folder) -> Result<Self> {
         let scene = Scene::load(&folder.scene(), &[])?;
-        let mesh = mesh_file::read_mesh(&folder.mesh())?;
-        let cloud = cloud_file::read_cloud_of(&folder.cloud(), &mesh)?;
-        scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
-        let material = scene.material_of_cells(&mesh);
-        let body = Body { mesh, cloud, material };
-        let cell_fields = export::cell_fields(&body.mesh, &certificates(&scene, &body)?, &body.material);
-        let (laws, basis) = (scene.build_laws(), Lagrange::new(scene.scheme.degree));
-        Ok(Self { laws, basis, fields: scene.export_fields(), cell_fields, out: folder.export(), body })
+        let (laws, basis, fields) = (scene.build_laws(), Lagrange::new(scene.scheme.degree), scene.export_fields());
+        Ok(Self { folder: folder.clone(), laws, basis, fields, out: folder.export(), scene })
     }
 
-    /// Reads a snapshot and hands its solution to `use_it`.
-    fn with<R>(&self, path: &Path, use_it: impl FnOnce(&Solution, f64) -> Result<R>) -> Result<R> {
-        let snapshot = Snapshot::read(path)?;
-        if snapshot.cells() != self.body.mesh.cells.len() || snapshot.degree + 1 != self.basis.len() {
-            let what = format!("{} does not belong to the scene and mesh of this run", path.display());
-            return Err(Error::input(what, "run the scene again with --force"));
+    fn sheet(&self, files: &GridFiles) -> Result<Sheet> {
+        let mesh = mesh_file::read_mesh(&self.folder.root.join(&files.mesh))?;
+        let cloud = cloud_file::read_cloud_of(&self.folder.root.join(&files.cloud), &mesh)?;
+        self.scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
+        let material = self.scene.material_of_cells(&mesh);
+        let body = Body { mesh, cloud, material };
+        let certificates = certificates(&self.scene, &body)?;
+        let cell_fields = export::cell_fields(&body.mesh, &certificates, &body.material);
+        Ok(Sheet { files: files.clone(), body, cell_fields })
+    }
+
+    /// Reads the snapshots, each with its own grid, and hands their solutions to `use_it`, with whether the grid is new.
+    fn each(
+        &self,
+        files: &[(usize, PathBuf)],
+        mut use_it: impl FnMut(usize, &Sheet, &Solution, f64, bool) -> Result<()>,
+    ) -> Result<()> {
+        let mut last: Option<Sheet> = None;
+        for (step, path) in files {
+            let snapshot = Snapshot::read(path)?;
+            let (sheet, is_new) = match last.take() {
+                Some(sheet) if sheet.files == snapshot.grid => (sheet, false),
+                _ => (self.sheet(&snapshot.grid)?, true),
+            };
+            if snapshot.cells() != sheet.body.mesh.cells.len() || snapshot.degree + 1 != self.basis.len() {
+                let what = format!("{} does not belong to the scene and mesh of this run", path.display());
+                return Err(Error::input(what, "run the scene again with --force"));
+            }
+            let solution = Solution::of_snapshot(&snapshot, &self.basis, &self.laws, &sheet.body.material);
+            use_it(*step, &sheet, &solution, snapshot.time, is_new)?;
+            last = Some(sheet);
         }
-        use_it(&Solution::of_snapshot(&snapshot, &self.basis, &self.laws, &self.body.material), snapshot.time)
+        Ok(())
     }
 
     /// Fields that the solution has.
@@ -104,35 +130,41 @@ impl Export {
 
     fn vtu(&self, files: &[(usize, PathBuf)]) -> Result<()> {
         let (mut grids, mut points) = (Vec::new(), Vec::new());
-        for (step, path) in files {
+        self.each(files, |step, sheet, solution, time, _| {
             let (grid_path, point_path) =
                 (self.out.join(format!("grid_{step:06}.vtu")), self.out.join(format!("points_{step:06}.vtu")));
-            let time = self.with(path, |solution, time| {
-                let fields = self.fields(solution);
-                let mut grid = export::grid(&self.body.mesh, solution, &fields);
-                grid.cell_fields = self.cell_fields.clone();
-                vtu::write_grid(&grid_path, &grid)?;
-                vtu::write_points(&point_path, &export::points(&self.body.mesh, &self.body.cloud, solution, &fields))?;
-                Ok(time)
-            })?;
+            let (fields, body) = (self.fields(solution), &sheet.body);
+            let mut grid = export::grid(&body.mesh, solution, &fields);
+            grid.cell_fields = sheet.cell_fields.clone();
+            vtu::write_grid(&grid_path, &grid)?;
+            vtu::write_points(&point_path, &export::points(&body.mesh, &body.cloud, solution, &fields))?;
             grids.push((time, grid_path));
             points.push((time, point_path));
-        }
+            Ok(())
+        })?;
         pvd::write_series(&self.out.join("grid.pvd"), &grids)?;
         pvd::write_series(&self.out.join("points.pvd"), &points)
     }
 
+    /// The series, each time on its grid; the mesh alone is that of the start.
     fn xdmf(&self, files: &[(usize, PathBuf)]) -> Result<()> {
-        xdmf::write_mesh(&self.out.join("mesh.xdmf"), &self.body.mesh)?;
-        xdmf::write_boundary(&self.out.join("boundary.xdmf"), &self.body.mesh)?;
-        let empty = crate::io::grid::HighOrderGrid::of_mesh(&self.body.mesh, self.basis.len() - 1);
-        let mut series = xdmf::Series::create(&self.out.join("series.xdmf"), &empty)?;
-        for (_, path) in files {
-            self.with(path, |solution, time| {
-                let grid = export::grid(&self.body.mesh, solution, &self.fields(solution));
-                series.push(time, &grid.point_fields, &self.cell_fields)
-            })?;
-        }
-        series.finish()
+        let first = mesh_file::read_mesh(&self.folder.mesh())?;
+        xdmf::write_mesh(&self.out.join("mesh.xdmf"), &first)?;
+        xdmf::write_boundary(&self.out.join("boundary.xdmf"), &first)?;
+        let mut series: Option<xdmf::Series> = None;
+        self.each(files, |_, sheet, solution, time, is_new| {
+            let grid = export::grid(&sheet.body.mesh, solution, &self.fields(solution));
+            let series = match &mut series {
+                Some(series) => {
+                    if is_new {
+                        series.regrid(&grid)?;
+                    }
+                    series
+                }
+                none => none.insert(xdmf::Series::create(&self.out.join("series.xdmf"), &grid)?),
+            };
+            series.push(time, &grid.point_fields, &sheet.cell_fields)
+        })?;
+        series.map_or(Ok(()), xdmf::Series::finish)
     }
 }

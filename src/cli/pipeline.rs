@@ -1,13 +1,14 @@
 //! The stages of the pipeline, as commands share them: from files where they are given, else from the scene.
 
 use crate::cloud::Cloud;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::io::{cloud_file, mesh_file, operators_file};
 use crate::lane::Kernel;
 use crate::mesh::{Mesh, map};
 use crate::operators::{Blocks, Line, Operators, Stored};
 use crate::run::Folder;
-use crate::scene::{Scene, build};
+use crate::scene::regrid::NewMesh;
+use crate::scene::{Scene, build, portable};
 use crate::step::{Loss, Scheme};
 use std::path::{Path, PathBuf};
 
@@ -113,6 +114,29 @@ pub fn scheme(scene: &Scene, body: &Body, operators: Operators, kernel: Kernel) 
 pub fn write_input(scene: &Scene, files: &Files, body: &Body, folder: &Folder) -> Result<()> {
     mesh_file::write_mesh(&folder.mesh(), &body.mesh)?;
     cloud_file::write_cloud(&folder.cloud(), &body.cloud, &body.mesh)?;
+    for (rule, regrid) in scene.regrids.iter().enumerate() {
+        match &regrid.grid {
+            NewMesh::Files(files) => {
+                for (k, file) in files.iter().enumerate() {
+                    let mesh = build::read_mesh(&scene.resolve(file))?;
+                    mesh_file::write_mesh(&folder.root.join(portable::regrid_file(rule, k)), &mesh)?;
+                }
+            }
+            NewMesh::Geometry { path, .. } => copy(&scene.resolve(path), &folder.root.join(portable::geometry_file(rule)))?,
+            _ => {}
+        }
+    }
+    if let Some(snapshot) = &scene.initial.snapshot {
+        copy(&scene.resolve(snapshot), &folder.root.join("initial.h5"))?;
+    }
     let text = scene.portable_toml(files.mesh.is_some(), files.cloud.is_some());
     crate::io::pending::write_text(&folder.scene(), &text)
+}
+
+/// Copies a file, unless it is there already.
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    if from.canonicalize().ok().is_some_and(|from| to.canonicalize().is_ok_and(|to| to == from)) {
+        return Ok(());
+    }
+    std::fs::copy(from, to).map(drop).map_err(|why| Error::output(to, why))
 }

@@ -16,7 +16,8 @@ names! {
     Policy {
         /// They stay where they are; a cell that cannot carry them gets points at its Gauss nodes instead.
         Keep = "keep",
-        /// As keep, but a cell with too few points gets more of the layout, and one with too many is thinned to it.
+        /// As keep, but a cell with too few points gets more of the layout, and of more than twice as many as it needs those
+        /// stay that are nearest to its Gauss nodes.
         Enrich = "enrich",
         /// Cells that are new get the layout of the scene: congruent cells share their matrices.
         Layout = "layout",
@@ -158,7 +159,8 @@ fn carries(certificate: &Certificate, m: usize) -> bool {
         && certificate.condition <= CONDITION
 }
 
-/// Adds points of the layout where there are too few, thins to the nearest ones of the layout where there are too many.
+/// Adds points of the layout where there are too few; where there are too many, those nearest to the Gauss nodes stay (they
+/// amplify least at the faces).
 fn enrich(seats: &mut [Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand) -> Result<(), Error> {
     let gap = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
     for cell in poor(seats, changed, new, demand.line)? {
@@ -170,9 +172,10 @@ fn enrich(seats: &mut [Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand
             }
         }
     }
+    let nodes = demand.line.nodes();
     for cell in (0..seats.len()).filter(|&cell| changed[cell]) {
-        let (wanted, own) = (demand.fresh.of(cell), &seats[cell]);
-        if own.len() <= 2 * wanted.len().max(demand.line.m * demand.line.m) {
+        let (wanted, own) = (&nodes, &seats[cell]);
+        if own.len() <= 2 * wanted.len().max(demand.fresh.of(cell).len()) {
             continue;
         }
         let nearest = |xi: &[f64; 2]| {
@@ -233,4 +236,131 @@ fn trees(old: &Grid, cloud: &Cloud) -> Vec<RTree<GeomWithData<[f64; 2], usize>>>
 /// (length: points + 1).
 pub fn histories(placed: &Placed, first_old: &[usize], internal: &[f64]) -> Vec<f64> {
     placed.source.iter().flat_map(|&old| &internal[first_old[old]..first_old[old + 1]]).copied().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloud::{Layout, seed};
+    use crate::mesh::rectangle;
+    use crate::regrid::same_cells;
+
+    const JITTER: Layout = Layout::Jitter { seed: 3, amount: 0.4 };
+
+    struct Case {
+        old: Mesh,
+        cloud: Cloud,
+        new: Mesh,
+    }
+
+    fn placed(case: &Case, policy: Policy) -> (Placed, Vec<Option<usize>>) {
+        let material = [vec![0; case.old.cells.len()], vec![0; case.new.cells.len()]];
+        let (old, new) =
+            (Grid { mesh: &case.old, material: &material[0] }, Grid { mesh: &case.new, material: &material[1] });
+        let same = same_cells(&old, &new);
+        let fresh = seed(Layout::Paper, 3, case.new.cells.len());
+        let line = Line::new(2);
+        let demand = Demand { line: &line, policy, fresh: &fresh, samples: true };
+        (place(&old, &case.cloud, &new, &same, &demand).unwrap(), same)
+    }
+
+    fn positions(mesh: &Mesh, cloud: &Cloud) -> Vec<[f64; 2]> {
+        let of = |cell: usize| cloud.of(cell).iter().map(move |&xi| map::position(&mesh.corners(cell), xi));
+        (0..mesh.cells.len()).flat_map(of).collect()
+    }
+
+    /// 8 x 8 cells with a dense cloud, and 8 x 8 cells of which a column is cut in two.
+    fn case(layout: Layout, k: usize) -> Case {
+        let old = rectangle([1.0, 1.0], [8, 8]).unwrap();
+        let mut new = rectangle([1.0, 1.0], [9, 8]).unwrap();
+        new.nodes.iter_mut().enumerate().for_each(|(node, x)| {
+            x[0] = [0.0, 0.125, 0.25, 0.375, 0.4375, 0.5, 0.625, 0.75, 0.875, 1.0][node % 10];
+        });
+        Case { cloud: seed(layout, k, 64), old, new }
+    }
+
+    #[test]
+    fn the_same_grid_keeps_its_cloud_to_the_bit() {
+        for policy in Policy::NAMES.iter().map(|(_, policy)| *policy) {
+            let same = Case { new: case(JITTER, 3).old, ..case(JITTER, 3) };
+            let (placed, _) = placed(&same, policy);
+            assert_eq!(placed.cloud, same.cloud);
+            assert_eq!(placed.source, (0..same.cloud.len()).collect::<Vec<_>>());
+            assert!(placed.kept.iter().all(|kept| *kept));
+        }
+    }
+
+    #[test]
+    fn points_stay_where_they_are_and_keep_their_histories_to_the_bit() {
+        // 8 x 8 jittered points a cell: 32 in each half, more than 9.
+        let case = case(JITTER, 8);
+        let (placed, same) = placed(&case, Policy::Keep);
+        let (before, after) = (positions(&case.old, &case.cloud), positions(&case.new, &placed.cloud));
+        assert_eq!((after.len(), placed.outside), (before.len(), 0));
+        let first: Vec<usize> = (0..=before.len()).map(|p| 2 * p).collect();
+        let internal: Vec<f64> = (0..2 * before.len()).map(|k| (k as f64).sin()).collect();
+        let moved = histories(&placed, &first, &internal);
+        for (p, &old) in placed.source.iter().enumerate() {
+            assert!(placed.kept[p]);
+            // Located to 2^-41 of the cell.
+            let gap = (after[p][0] - before[old][0]).hypot(after[p][1] - before[old][1]);
+            assert!(gap < 1e-12, "{gap:e}");
+            assert_eq!(moved[2 * p..2 * p + 2], internal[2 * old..2 * old + 2]);
+        }
+        let mut all = placed.source.clone();
+        all.sort_unstable();
+        assert_eq!(all, (0..before.len()).collect::<Vec<_>>());
+        for (cell, twin) in same.iter().enumerate().filter_map(|(cell, same)| Some((cell, (*same)?))) {
+            assert_eq!(placed.cloud.of(cell), case.cloud.of(twin));
+        }
+    }
+
+    #[test]
+    fn cells_that_cannot_carry_their_points_get_gauss_nodes_with_the_nearest_histories() {
+        // 3 x 3 points: a half has 3 or 6 of them, degree 2 needs 9.
+        let case = case(Layout::Paper, 3);
+        let (placed, same) = placed(&case, Policy::Keep);
+        let (before, after) = (positions(&case.old, &case.cloud), positions(&case.new, &placed.cloud));
+        for cell in 0..72 {
+            let points = placed.cloud.first[cell]..placed.cloud.first[cell + 1];
+            if same[cell].is_some() {
+                assert!(placed.kept[points.clone()].iter().all(|kept| *kept));
+                continue;
+            }
+            assert_eq!(placed.cloud.of(cell), Line::new(2).nodes());
+            for p in points {
+                let distance = |k: usize| (after[p][0] - before[k][0]).hypot(after[p][1] - before[k][1]);
+                let nearest = (0..before.len()).map(distance).fold(f64::INFINITY, f64::min);
+                assert!(!placed.kept[p] && distance(placed.source[p]) <= nearest);
+            }
+        }
+    }
+
+    #[test]
+    fn enriched_cells_keep_their_points_and_crowded_ones_are_thinned() {
+        let case = case(Layout::Paper, 3);
+        let (few, same) = placed(&case, Policy::Enrich);
+        for cell in (0..72).filter(|&cell| same[cell].is_none()) {
+            let points = few.cloud.first[cell]..few.cloud.first[cell + 1];
+            let kept = few.kept[points.clone()].iter().filter(|kept| **kept).count();
+            assert!(points.len() >= 9 && kept >= 3, "{kept} of {}", points.len());
+        }
+        let dense = self::case(JITTER, 8);
+        let (many, same) = placed(&dense, Policy::Enrich);
+        for cell in (0..72).filter(|&cell| same[cell].is_none()) {
+            let points = many.cloud.first[cell]..many.cloud.first[cell + 1];
+            assert!(points.len() <= 18 && many.kept[points].iter().all(|kept| *kept));
+        }
+    }
+
+    #[test]
+    fn a_layout_fills_new_cells_and_leaves_the_others() {
+        let case = case(JITTER, 3);
+        let (placed, same) = placed(&case, Policy::Layout);
+        let fresh = seed(Layout::Paper, 3, 72);
+        for cell in 0..72 {
+            let wanted = same[cell].map_or(fresh.of(cell), |twin| case.cloud.of(twin));
+            assert_eq!(placed.cloud.of(cell), wanted);
+        }
+    }
 }

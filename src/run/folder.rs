@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// `runs/<scene>/`: `scene.toml mesh.h5 cloud.h5 operators.h5 snapshots/ lines/ ledger.csv summary.json export/`, and after
 /// regrids `regrid.csv mesh_<step>.h5 cloud_<step>.h5`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Folder {
     /// The folder itself.
     pub root: PathBuf,

@@ -55,6 +55,36 @@ impl Scene {
         Ok(mesh)
     }
 
+    /// Looks at the mesh files of all `[[regrid]]` before the first step.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or whose groups are not those of the scene.
+    pub fn check_regrids(&self) -> Result<()> {
+        for (rule, regrid) in self.regrids.iter().enumerate() {
+            match &regrid.grid {
+                NewMesh::Files(files) => {
+                    for file in files {
+                        let mesh = read_mesh(&self.resolve(file))?;
+                        let here = |why: Error| self.error(&format!("regrid.{rule}.mesh"), format!("{}: {why}", file.display()), "give meshes of the same body with the same groups");
+                        self.check_groups(&mesh.groups, &mesh.edge_groups).map_err(here)?;
+                    }
+                }
+                NewMesh::Geometry { path, .. } => {
+                    if Command::new("gmsh").arg("--version").output().is_err() {
+                        let remedy = "install Gmsh (https://gmsh.info, or `pip install gmsh`), or give `mesh`";
+                        return Err(self.error(&format!("regrid.{rule}.geo"), "there is no `gmsh` on the path", remedy));
+                    }
+                    if !self.resolve(path).is_file() {
+                        let what = format!("there is no file {}", path.display());
+                        return Err(self.error(&format!("regrid.{rule}.geo"), what, "the path is relative to the scene"));
+                    }
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
     /// Whether a `[[regrid]]` whose time has come is due by its criteria.
     pub fn regrid_is_due(&self, rule: usize, present: &Present) -> bool {
         let Criteria { certificate, distortion, front } = self.regrids[rule].criteria;

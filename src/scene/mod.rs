@@ -13,7 +13,7 @@ mod laws;
 mod names;
 mod origin;
 mod outputs;
-mod portable;
+pub mod portable;
 mod read;
 mod reader;
 pub mod regrid;
