@@ -28,10 +28,15 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     (a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64).sqrt()
 }
 
+fn list(numbers: &[f64]) -> String {
+    numbers.iter().map(|x| format!("{x:.2e}")).collect::<Vec<_>>().join(" ")
+}
+
 /// The smooth box of degree N on n x n cells; lines with v and P.
 fn smooth_box(degree: usize, n: usize, regrid: &str) -> Outcome {
     let fields = BOX.replace("at=", "fields=[\"velocity\",\"piola\"],at=");
-    let sets = [format!("scheme.degree={degree}"), format!("mesh.rectangle.cells=[{n},{n}]"), fields, regrid.to_owned()];
+    let sets =
+        [format!("scheme.degree={degree}"), format!("mesh.rectangle.cells=[{n},{n}]"), fields, regrid.to_owned()];
     run("smooth_box.toml", &sets.iter().map(String::as_str).filter(|set| !set.is_empty()).collect::<Vec<_>>())
 }
 
@@ -69,7 +74,11 @@ fn conserve(outcome: &Outcome, what: &str) -> usize {
         for name in ["momentum_1_change", "momentum_2_change"] {
             assert!(table.column(name)[k].abs() < 1e-12 * momentum, "{what} {k}: {name} {:e}", table.column(name)[k]);
         }
-        assert!(table.column("deformation_change")[k] < 1e-12, "{what} {k}: F {:e}", table.column("deformation_change")[k]);
+        assert!(
+            table.column("deformation_change")[k] < 1e-12,
+            "{what} {k}: F {:e}",
+            table.column("deformation_change")[k]
+        );
     }
     kinetic.len()
 }
@@ -77,6 +86,7 @@ fn conserve(outcome: &Outcome, what: &str) -> usize {
 fn energy_never_rises(outcome: &Outcome, what: &str) {
     let energy = outcome.ledger().column("total_energy");
     let rise = energy.windows(2).map(|e| e[1] / e[0] - 1.0).fold(f64::NEG_INFINITY, f64::max);
+    println!("{what}: largest rise {rise:.1e}");
     // Rows are ten steps apart. Rounding of sums over some thousand nodes.
     assert!(rise < 1e-11, "{what}: {rise:e}");
 }
@@ -104,9 +114,15 @@ fn the_smooth_box_keeps_its_order_and_its_totals_from_grid_to_grid() {
             let errors = [error(n, &rectangles(other, n)), error(2 * n, &rectangles(2 * other, 2 * n))];
             let coarser = if other < n { [error(other, ""), error(2 * other, "")] } else { plain };
             let found = (errors[0] / errors[1]).log2();
-            println!("S{degree} {name}: {errors:.3e?} order {found:.2}; without {plain:.3e?} order {order:.2}; coarser {coarser:.3e?}");
+            let words = format!(
+                "{} order {found:.2}; without {} order {order:.2}; coarser {}",
+                list(&errors),
+                list(&plain),
+                list(&coarser)
+            );
+            println!("S{degree} {name}: {words}");
             assert!(found > order - 0.3, "S{degree} {name}: order {found:.2} against {order:.2}");
-            assert!((0..2).all(|k| errors[k] < 1.3 * coarser[k]), "S{degree} {name}: {errors:e?} {coarser:e?}");
+            assert!((0..2).all(|k| errors[k] < 1.3 * coarser[k]), "S{degree} {name}: {words}");
         }
         let with_file = |k: usize| {
             let file = unstructured(folder.path(), k * n / 8);
@@ -123,9 +139,9 @@ fn the_smooth_box_keeps_its_order_and_its_totals_from_grid_to_grid() {
         };
         let (errors, wholly): (Vec<f64>, Vec<f64>) = [1, 2].map(with_file).into_iter().unzip();
         let found = (errors[0] / errors[1]).log2();
-        println!("S{degree} unstructured: {errors:.3e?} order {found:.2}; wholly on it {wholly:.3e?}");
+        println!("S{degree} unstructured: {} order {found:.2}; wholly on it {}", list(&errors), list(&wholly));
         assert!(found > order - 0.3, "S{degree} unstructured: order {found:.2} against {order:.2}");
-        assert!((0..2).all(|k| errors[k] < 1.3 * wholly[k].max(plain[k])), "S{degree}: {errors:e?} {wholly:e?}");
+        assert!((0..2).all(|k| errors[k] < 1.3 * wholly[k].max(plain[k])), "S{degree}");
     }
 }
 
@@ -149,8 +165,8 @@ fn no_run_gains_energy_with_a_regrid_every_step() {
         let outcome = run("square_impact.toml", &sets);
         energy_never_rises(&outcome, &format!("impact S{degree}"));
         let table = regrids(&outcome);
-        let gain = table.column("kinetic").iter().zip(table.column("kinetic_before")).map(|(a, b)| a / b - 1.0);
-        assert!(gain.fold(f64::NEG_INFINITY, f64::max) < 1e-12);
+        let (after, before) = (table.column("kinetic"), table.column("kinetic_before"));
+        assert!(after.iter().zip(&before).all(|(a, b)| *a <= b * (1.0 + 1e-12)), "impact S{degree}");
     }
 }
 
@@ -173,7 +189,8 @@ fn regrids_on_the_same_grid_and_cloud_change_no_bit() {
                 ],
             )
         };
-        let (with, without) = (sets(&format!("regrid=[{{every_steps=3,points=\"{points}\",{grid}}}]")), sets("regrid=[]"));
+        let (with, without) =
+            (sets(&format!("regrid=[{{every_steps=3,points=\"{points}\",{grid}}}]")), sets("regrid=[]"));
         assert!(with.number("steps") > 30.0);
         let states = |outcome: &Outcome| {
             let files = snapshot::list(&outcome.path().join("snapshots")).unwrap();
@@ -191,7 +208,10 @@ fn regrids_on_the_same_grid_and_cloud_change_no_bit() {
 fn the_spinning_square_changes_its_energy_by_the_square_of_the_error() {
     for degree in 1..=3 {
         let change = |n: usize| {
-            let grid = format!("regrid=[{{at=[2.5e-4],points=\"layout\",rectangle={{size=[1,1],cells=[{m},{m}]}}}}]", m = n * 5 / 4);
+            let grid = format!(
+                "regrid=[{{at=[2.5e-4],points=\"layout\",rectangle={{size=[1,1],cells=[{m},{m}]}}}}]",
+                m = n * 5 / 4
+            );
             let cells = format!("mesh.rectangle.cells=[{n},{n}]");
             let degree = format!("scheme.degree={degree}");
             let outcome = run("spinning_square.toml", &[&degree, &cells, &grid, "time.end=3e-4", "output=[]"]);

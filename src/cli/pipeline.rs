@@ -122,7 +122,9 @@ pub fn write_input(scene: &Scene, files: &Files, body: &Body, folder: &Folder) -
                     mesh_file::write_mesh(&folder.root.join(portable::regrid_file(rule, k)), &mesh)?;
                 }
             }
-            NewMesh::Geometry { path, .. } => copy(&scene.resolve(path), &folder.root.join(portable::geometry_file(rule)))?,
+            NewMesh::Geometry { path, .. } => {
+                copy(&scene.resolve(path), &folder.root.join(portable::geometry_file(rule)))?
+            }
             _ => {}
         }
     }

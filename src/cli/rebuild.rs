@@ -28,9 +28,25 @@ pub const PHASES: [&str; 7] = ["mesh", "transfer", "points", "links", "matrices"
 
 /// Columns of `regrid.csv` before the phases. Energies in J/m, areas in m^2.
 const COLUMNS: [&str; 19] = [
-    "step", "t", "rule", "cells_before", "cells", "copied", "points_before", "points", "points_kept", "points_outside",
-    "kinetic_before", "kinetic", "strain_before", "strain", "momentum_1_change", "momentum_2_change", "deformation_change",
-    "transfer_error", "uncovered",
+    "step",
+    "t",
+    "rule",
+    "cells_before",
+    "cells",
+    "copied",
+    "points_before",
+    "points",
+    "points_kept",
+    "points_outside",
+    "kinetic_before",
+    "kinetic",
+    "strain_before",
+    "strain",
+    "momentum_1_change",
+    "momentum_2_change",
+    "deformation_change",
+    "transfer_error",
+    "uncovered",
 ];
 
 /// A grid with everything that is built on it.
@@ -95,7 +111,19 @@ impl<'a> Regrids<'a> {
         let files = HashMap::from([(key_of_files(first), GridFiles::default())]);
         let fired = vec![0; schedules.len()];
         let (material, cloud) = (first.material.clone(), first.cloud.clone());
-        Ok(Self { scene, folder, kernel, schedules, fired, due: None, material, cloud, cache: VecDeque::new(), files, table })
+        Ok(Self {
+            scene,
+            folder,
+            kernel,
+            schedules,
+            fired,
+            due: None,
+            material,
+            cloud,
+            cache: VecDeque::new(),
+            files,
+            table,
+        })
     }
 
     /// Puts the grid that is due in place of `old`, and the state on it; totals before and after, none where it is the same.
@@ -166,18 +194,27 @@ impl<'a> Regrids<'a> {
         Ok(Operators::assemble(&body.mesh, line, blocks, &needs, stored))
     }
 
-    /// Writes mesh and points beside those of the start, each grid once.
+    /// Writes mesh and points beside those of the start, each grid once; nothing where no output takes snapshots.
     fn write(&mut self, body: &Body, step: usize) -> Result<GridFiles> {
+        let snapshots = self.scene.outputs.iter().any(|output| output.what == crate::scene::What::Fields);
+        if !snapshots {
+            return Ok(GridFiles::after(step));
+        }
         let key = key_of_files(body);
         if let Some(files) = self.files.get(&key) {
             return Ok(files.clone());
         }
         let files = GridFiles::after(step);
-        mesh_file::write_mesh(&self.folder.root.join(&files.mesh), &body.mesh)?;
-        cloud_file::write_cloud(&self.folder.root.join(&files.cloud), &body.cloud, &body.mesh)?;
+        write_grid(body, &files, self.folder)?;
         self.files.insert(key, files.clone());
         Ok(files)
     }
+}
+
+/// Writes mesh and points of a grid into the folder of the run.
+fn write_grid(body: &Body, files: &GridFiles, folder: &Folder) -> Result<()> {
+    mesh_file::write_mesh(&folder.root.join(&files.mesh), &body.mesh)?;
+    cloud_file::write_cloud(&folder.root.join(&files.cloud), &body.cloud, &body.mesh)
 }
 
 fn columns() -> Vec<&'static str> {
@@ -217,7 +254,8 @@ pub fn place_points(
         Policy::Enrich | Policy::Layout => scene.build_cloud(to.mesh)?,
     };
     let samples = scene.scheme.method == Method::AderDgmpm;
-    let demand = Demand { line: &scheme.operators.line, policy, fresh: &fresh, samples };
+    let histories = scheme.laws.iter().any(|law| !law.internal().is_empty());
+    let demand = Demand { line: &scheme.operators.line, policy, fresh: &fresh, samples, histories };
     place(from, cloud, to, &moved.same, &demand)
 }
 
@@ -258,7 +296,8 @@ impl Outcome<'_> {
     fn row(&self, clock: &Clock) -> Vec<f64> {
         let [before, after] = self.totals;
         let change = |k: usize| after.momentum[k] - before.momentum[k];
-        let deformation = before.deformation.iter().zip(after.deformation).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let deformation =
+            before.deformation.iter().zip(after.deformation).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let count = |k: usize| k as f64;
         let mut row = vec![
             count(self.state.step),
@@ -316,7 +355,10 @@ impl Outcome<'_> {
             ));
         }
         if self.placed.outside > 0 {
-            say(format!("  {} points lie outside of the new mesh, and are gone with their histories", self.placed.outside));
+            say(format!(
+                "  {} points lie outside of the new mesh, and are gone with their histories",
+                self.placed.outside
+            ));
         }
         let phases: Vec<String> = PHASES.iter().zip(clock.seconds).map(|(name, s)| format!("{name} {s:.4}")).collect();
         say(format!("  seconds: {}", phases.join(", ")));
@@ -341,6 +383,14 @@ impl Clock {
 }
 
 impl Built {
+    /// Writes its files where they are not there yet: a run that stops keeps its state on this grid.
+    pub fn keep_files(&self, folder: &Folder) -> Result<()> {
+        if folder.root.join(&self.files.mesh).exists() {
+            return Ok(());
+        }
+        write_grid(&self.body, &self.files, folder)
+    }
+
     /// What observers are told.
     pub fn news(&self) -> NewGrid<'_> {
         NewGrid { mesh: &self.body.mesh, material: &self.body.material, files: &self.files }
@@ -350,9 +400,11 @@ impl Built {
 /// An error that names the regrid.
 pub fn at_step(error: Error, state: &State) -> Error {
     match error {
-        Error::Input { what, place, remedy } => {
-            Error::Input { what: format!("regrid at step {}, t = {:.6e} s: {what}", state.step, state.time), place, remedy }
-        }
+        Error::Input { what, place, remedy } => Error::Input {
+            what: format!("regrid at step {}, t = {:.6e} s: {what}", state.step, state.time),
+            place,
+            remedy,
+        },
         other => other,
     }
 }

@@ -1,9 +1,9 @@
 //! `dgmpm regrid`: a stopped run on another grid, in a folder that `run` goes on from.
 
+use super::keep;
 use super::pipeline::{self, Body};
 use super::print::say;
 use super::rebuild::{place_points, scale};
-use super::keep;
 use crate::error::{Error, Result};
 use crate::io::snapshot::{self, GridFiles, Snapshot};
 use crate::io::{cloud_file, mesh_file, pending};
@@ -68,7 +68,11 @@ pub fn run(args: &Args) -> Result<()> {
     Snapshot::read(&path)?.write(&initial)?;
     pending::write_text(&folder.scene(), &scene.portable_from("initial.h5"))?;
     let (root, scene) = (folder.root.display(), folder.scene());
-    say(format!("the state on {} cells is in {root}; go on by: dgmpm run {} --out {root} --force", body.mesh.cells.len(), scene.display()));
+    say(format!(
+        "the state on {} cells is in {root}; go on by: dgmpm run {} --out {root} --force",
+        body.mesh.cells.len(),
+        scene.display()
+    ));
     Ok(())
 }
 
@@ -139,8 +143,7 @@ fn moved(
     policy: Policy,
 ) -> Result<(Body, Scheme, State)> {
     let material = scene.material_of_cells(&mesh);
-    let (from, to) =
-        (Grid { mesh: &old.mesh, material: &old.material }, Grid { mesh: &mesh, material: &material });
+    let (from, to) = (Grid { mesh: &old.mesh, material: &old.material }, Grid { mesh: &mesh, material: &material });
     let (n, components) = (scheme.operators.nodes(), state.components);
     let (unknowns, scale) = (state.unpack(&scheme.operators.blocks, n), scale(scheme));
     let field = Field { basis: &scheme.operators.line.basis, components, u: &unknowns, scale: &scale };

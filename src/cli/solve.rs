@@ -3,13 +3,13 @@
 use super::pipeline::{self, Files, Store};
 use super::print::{say, warn};
 use super::progress::Progress;
-use super::summary::Outcome;
 use super::rebuild::{self, Built, Regrids};
+use super::summary::Outcome;
 use super::{RunArgs, SceneArgs, preprocess};
 use crate::error::{Error, Place, Result};
-use crate::observe;
 use crate::io::snapshot::GridFiles;
 use crate::lane::Kernel;
+use crate::observe;
 use crate::run::{End, Folder, Report, Run, Settings, Stop};
 use crate::scene::Scene;
 use crate::state::State;
@@ -126,7 +126,9 @@ impl Solve<'_> {
 
     /// Keeps the last good state and says why the run ended.
     fn stopped(&self, stop: Stop, built: &Built, state: &State) -> (&'static str, Result<()>) {
-        let kept = observe::write(&built.scheme, state, &built.files, &self.folder.snapshots());
+        let kept = built
+            .keep_files(self.folder)
+            .and_then(|()| observe::write(&built.scheme, state, &built.files, &self.folder.snapshots()));
         if let Stop::Output(error) = stop {
             return ("failed", Err(error));
         }

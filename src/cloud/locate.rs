@@ -260,7 +260,9 @@ mod tests {
     fn cells_whose_boxes_meet_a_box_are_all_found_and_no_others() {
         let mesh = distorted();
         let locator = Locator::new(&mesh);
-        for [low, high] in [[[0.0, 0.0], [7.0, 5.0]], [[2.2, 1.1], [3.4, 1.3]], [[6.5, 4.9], [9.0, 9.0]], [[8.0, 1.0], [9.0, 2.0]]] {
+        for [low, high] in
+            [[[0.0, 0.0], [7.0, 5.0]], [[2.2, 1.1], [3.4, 1.3]], [[6.5, 4.9], [9.0, 9.0]], [[8.0, 1.0], [9.0, 2.0]]]
+        {
             let mut found = Vec::new();
             locator.overlapping(low, high, &mut found);
             found.sort_unstable();

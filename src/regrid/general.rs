@@ -38,8 +38,8 @@ pub(super) fn project<const M: usize>(
         fine: gauss_legendre(2 * M + 2),
     };
     let stride = field.components * M * M;
-    let shares = u.par_chunks_exact_mut(stride).enumerate().map_init(Scratch::default, |scratch, (cell, u)| {
-        match same[cell] {
+    let shares =
+        u.par_chunks_exact_mut(stride).enumerate().map_init(Scratch::default, |scratch, (cell, u)| match same[cell] {
             Some(twin) => {
                 u.copy_from_slice(&field.u[stride * twin..stride * (twin + 1)]);
                 let area = map::area(&new.mesh.corners(cell));
@@ -47,8 +47,7 @@ pub(super) fn project<const M: usize>(
                 Ok(Share { taken: vec![Taken { old: twin, area, total }], ..Share::default() })
             }
             None => job.cell(cell, scratch, u),
-        }
-    });
+        });
     shares.collect()
 }
 
@@ -123,7 +122,8 @@ impl<const M: usize> Job<'_, M> {
         let Scratch { candidates, samples } = scratch;
         samples.clear();
         candidates.clear();
-        let bound = |pick: fn(f64, f64) -> f64| [0, 1].map(|i| corners.iter().map(|x| x[i]).reduce(pick).unwrap_or(0.0));
+        let bound =
+            |pick: fn(f64, f64) -> f64| [0, 1].map(|i| corners.iter().map(|x| x[i]).reduce(pick).unwrap_or(0.0));
         self.locator.overlapping(bound(f64::min), bound(f64::max), candidates);
         candidates.sort_unstable();
         // Relative to a corner, so that cells far from the origin lose no digits.
@@ -180,11 +180,14 @@ impl<const M: usize> Job<'_, M> {
         }
         let area: f64 = taken.iter().map(|taken| taken.area).sum();
         if area > 0.0 {
-            return Ok(Base::Mean(std::array::from_fn(|k| taken.iter().map(|taken| taken.total[k]).sum::<f64>() / area)));
+            return Ok(Base::Mean(std::array::from_fn(|k| {
+                taken.iter().map(|taken| taken.total[k]).sum::<f64>() / area
+            })));
         }
         let near = self.nearest(corners, self.new.material[cell]).ok_or_else(|| {
             let group = &self.new.mesh.groups[self.new.mesh.cell_group[cell]];
-            let what = format!("cell {} of group {group} has a material that the old grid lacks", self.new.mesh.number(cell));
+            let what =
+                format!("cell {} of group {group} has a material that the old grid lacks", self.new.mesh.number(cell));
             Error::input(what, "give a mesh with the groups of the old one")
         })?;
         let area = map::area(&self.old.mesh.corners(near));

@@ -29,7 +29,7 @@ names! {
 pub struct Placed {
     /// The points.
     pub cloud: Cloud,
-    /// For each the old point that it is, or that is nearest in X among those of its material.
+    /// For each the old point that it is, or that is nearest in X among those of its material; empty where nobody asks.
     pub source: Vec<usize>,
     /// Whether it is that point itself.
     pub kept: Vec<bool>,
@@ -48,6 +48,8 @@ pub struct Demand<'a> {
     pub fresh: &'a Cloud,
     /// Whether the method samples at the points; else any points will do.
     pub samples: bool,
+    /// Whether a law has internal variables, whose sources are then looked for.
+    pub histories: bool,
 }
 
 /// Face Lebesgue constants that a cell may have, N = 0..6 (design section 8; beyond N = 4 by the same factor 2.5).
@@ -67,20 +69,17 @@ struct Seat {
 ///
 /// # Errors
 /// A material without any old point.
-pub fn place(
-    old: &Grid,
-    cloud: &Cloud,
-    new: &Grid,
-    same: &[Option<usize>],
-    demand: &Demand,
-) -> Result<Placed, Error> {
+pub fn place(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>], demand: &Demand) -> Result<Placed, Error> {
     let (mut seats, outside) = match demand.policy {
         Policy::Layout => (of_layout(cloud, same, demand.fresh), 0),
         Policy::Keep | Policy::Enrich => stay(old, cloud, new, same),
     };
     // A cell whose points are as they were is not looked at: what it could carry it can.
-    let changed: Vec<bool> =
-        seats.iter().zip(same).map(|(seats, same)| same.is_none_or(|twin| cloud.of(twin).len() != seats.len())).collect();
+    let changed: Vec<bool> = seats
+        .iter()
+        .zip(same)
+        .map(|(seats, same)| same.is_none_or(|twin| cloud.of(twin).len() != seats.len()))
+        .collect();
     if demand.samples {
         if demand.policy == Policy::Enrich {
             enrich(&mut seats, &changed, new, demand)?;
@@ -92,7 +91,14 @@ pub fn place(
             }
         }
     }
-    finish(old, cloud, new, &seats, outside)
+    let source = if demand.histories { sources(old, cloud, new, &seats)? } else { vec![] };
+    let mut out = Placed { cloud: Cloud { first: vec![0], xi: vec![] }, source, kept: vec![], outside };
+    for seats in &seats {
+        out.kept.extend(seats.iter().map(|seat| seat.old.is_some()));
+        out.cloud.xi.extend(seats.iter().map(|seat| seat.xi));
+        out.cloud.first.push(out.cloud.xi.len());
+    }
+    Ok(out)
 }
 
 /// Copies keep their points; other cells have those of the layout.
@@ -195,12 +201,11 @@ fn enrich(seats: &mut [Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand
     Ok(())
 }
 
-/// Fills in the nearest old points of those that are new.
-fn finish(old: &Grid, cloud: &Cloud, new: &Grid, seats: &[Vec<Seat>], outside: usize) -> Result<Placed, Error> {
-    let mut out = Placed { cloud: Cloud { first: vec![0], xi: vec![] }, outside, ..Placed::default() };
-    let is_new = |cell: &usize| seats[*cell].iter().any(|seat| seat.old.is_none());
-    let trees = if (0..seats.len()).any(|cell| is_new(&cell)) { trees(old, cloud) } else { vec![] };
-    let sources = |cell: usize| -> Result<Vec<usize>, Error> {
+/// The old point that each is, or that is nearest.
+fn sources(old: &Grid, cloud: &Cloud, new: &Grid, seats: &[Vec<Seat>]) -> Result<Vec<usize>, Error> {
+    let is_new = |seats: &Vec<Seat>| seats.iter().any(|seat| seat.old.is_none());
+    let trees = if seats.iter().any(is_new) { trees(old, cloud) } else { vec![] };
+    let of = |cell: usize| -> Result<Vec<usize>, Error> {
         let corners = new.mesh.corners(cell);
         let source = |seat: &Seat| {
             let near = || trees.get(new.material[cell])?.nearest_neighbor(map::position(&corners, seat.xi));
@@ -211,14 +216,8 @@ fn finish(old: &Grid, cloud: &Cloud, new: &Grid, seats: &[Vec<Seat>], outside: u
         };
         seats[cell].iter().map(source).collect()
     };
-    let sources = (0..seats.len()).into_par_iter().map(sources).collect::<Result<Vec<_>, Error>>()?;
-    for (seats, sources) in seats.iter().zip(sources) {
-        out.source.extend(sources);
-        out.kept.extend(seats.iter().map(|seat| seat.old.is_some()));
-        out.cloud.xi.extend(seats.iter().map(|seat| seat.xi));
-        out.cloud.first.push(out.cloud.xi.len());
-    }
-    Ok(out)
+    let all = (0..seats.len()).into_par_iter().map(of).collect::<Result<Vec<_>, Error>>()?;
+    Ok(all.concat())
 }
 
 /// The old points of each material.
@@ -260,7 +259,7 @@ mod tests {
         let same = same_cells(&old, &new);
         let fresh = seed(Layout::Paper, 3, case.new.cells.len());
         let line = Line::new(2);
-        let demand = Demand { line: &line, policy, fresh: &fresh, samples: true };
+        let demand = Demand { line: &line, policy, fresh: &fresh, samples: true, histories: true };
         (place(&old, &case.cloud, &new, &same, &demand).unwrap(), same)
     }
 

@@ -201,9 +201,8 @@ impl<const M: usize> Job<'_, M> {
     fn cell(&self, cell: usize, u: &mut [f64]) -> Share {
         let stride = self.field.components * M * M;
         let mut values = [[[0.0; 8]; M]; M];
-        let unknowns = |old: usize| {
-            gather::<M>(&self.field.u[stride * old..stride * (old + 1)], |a| self.from.node::<M>(old, a))
-        };
+        let unknowns =
+            |old: usize| gather::<M>(&self.field.u[stride * old..stride * (old + 1)], |a| self.from.node::<M>(old, a));
         for (old, x, y) in self.pairs(cell) {
             let there = unknowns(old);
             for (q, r) in (0..M).flat_map(|q| (0..M).map(move |r| (q, r))) {

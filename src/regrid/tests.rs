@@ -158,7 +158,8 @@ fn the_error_falls_with_the_order_of_the_space() {
     for degree in 1..=3 {
         let basis = Lagrange::new(degree);
         let error = |k: usize| {
-            let (old, new) = (distorted([1.0, 1.0], [6 * k, 6 * k], 0.15), rectangle([1.0, 1.0], [7 * k, 5 * k]).unwrap());
+            let (old, new) =
+                (distorted([1.0, 1.0], [6 * k, 6 * k], 0.15), rectangle([1.0, 1.0], [7 * k, 5 * k]).unwrap());
             moved(&old, &new, &basis, &sampled(&old, &basis, wavy)).error
         };
         let ratio = error(1) / error(2);

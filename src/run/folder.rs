@@ -64,7 +64,10 @@ impl Folder {
             rest.bytes().all(|c| c.is_ascii_digit()).then_some(())
         };
         let entries = std::fs::read_dir(&self.root).into_iter().flatten().flatten();
-        entries.map(|entry| entry.path()).filter(|p| p.file_name().and_then(|n| is_one(n.to_str()?)).is_some()).collect()
+        entries
+            .map(|entry| entry.path())
+            .filter(|p| p.file_name().and_then(|n| is_one(n.to_str()?)).is_some())
+            .collect()
     }
 
     /// Figures of the run.

@@ -218,7 +218,10 @@ impl Scene {
         let fail = |what: String, remedy: &str| self.error("initial.snapshot", what, remedy);
         if snapshot.cells() != cells || snapshot.degree != scheme.operators.degree {
             let (given, degree) = (snapshot.cells(), snapshot.degree);
-            let what = format!("the snapshot has {given} cells of degree {degree}, the scene {cells} of {}", scheme.operators.degree);
+            let what = format!(
+                "the snapshot has {given} cells of degree {degree}, the scene {cells} of {}",
+                scheme.operators.degree
+            );
             return Err(fail(what, "give the mesh of that run, or bring it over by `dgmpm regrid`"));
         }
         if snapshot.time >= self.end {

@@ -3,11 +3,11 @@
 use super::build::read_mesh;
 use super::regrid::{Around, Criteria, NewMesh, Strip};
 use super::{Expression, Scene};
+use crate::cloud::Cloud;
 use crate::error::{Error, Result};
 use crate::mesh::{self, Mesh, map};
 use crate::observe::{Solution, View};
 use crate::operators::{Line, Sampling, certificate::certify};
-use crate::cloud::Cloud;
 use crate::regrid::TensorGrid;
 use std::path::Path;
 use std::process::Command;
@@ -45,7 +45,11 @@ impl Scene {
                 self.error(&key("shift"), why.to_string(), "shift by less than a part of the smallest cell")
             })?,
             NewMesh::Strips(strips) => self.with_strips(strips, present).map_err(|what| {
-                self.error(&key("strips"), what, "strips need a mesh of the scene that is a grid of lines, of one group")
+                self.error(
+                    &key("strips"),
+                    what,
+                    "strips need a mesh of the scene that is a grid of lines, of one group",
+                )
             })?,
             NewMesh::Geometry { path, size } => gmsh(&self.resolve(path), size.as_ref(), now, time)
                 .map_err(|(what, remedy)| self.error(&key("geo"), what, remedy))?,
@@ -65,18 +69,32 @@ impl Scene {
                 NewMesh::Files(files) => {
                     for file in files {
                         let mesh = read_mesh(&self.resolve(file))?;
-                        let here = |why: Error| self.error(&format!("regrid.{rule}.mesh"), format!("{}: {why}", file.display()), "give meshes of the same body with the same groups");
+                        let here = |why: Error| {
+                            self.error(
+                                &format!("regrid.{rule}.mesh"),
+                                format!("{}: {why}", file.display()),
+                                "give meshes of the same body with the same groups",
+                            )
+                        };
                         self.check_groups(&mesh.groups, &mesh.edge_groups).map_err(here)?;
                     }
                 }
                 NewMesh::Geometry { path, .. } => {
                     if Command::new("gmsh").arg("--version").output().is_err() {
                         let remedy = "install Gmsh (https://gmsh.info, or `pip install gmsh`), or give `mesh`";
-                        return Err(self.error(&format!("regrid.{rule}.geo"), "there is no `gmsh` on the path", remedy));
+                        return Err(self.error(
+                            &format!("regrid.{rule}.geo"),
+                            "there is no `gmsh` on the path",
+                            remedy,
+                        ));
                     }
                     if !self.resolve(path).is_file() {
                         let what = format!("there is no file {}", path.display());
-                        return Err(self.error(&format!("regrid.{rule}.geo"), what, "the path is relative to the scene"));
+                        return Err(self.error(
+                            &format!("regrid.{rule}.geo"),
+                            what,
+                            "the path is relative to the scene",
+                        ));
                     }
                 }
                 _ => {}
@@ -166,7 +184,9 @@ fn grid_of_lines(like: &Mesh, lines: [Vec<f64>; 2]) -> std::result::Result<Mesh,
     let mut side = [None; 4];
     for edge in &like.edges {
         let x = like.face_nodes(edge.cell, edge.face).map(|node| like.nodes[node]);
-        let on = |axis: usize, end: usize| x.iter().all(|x| (x[axis] - ends[axis][end]).abs() <= 1e-12 * ends[axis][1].abs());
+        let on = |axis: usize, end: usize| {
+            x.iter().all(|x| (x[axis] - ends[axis][end]).abs() <= 1e-12 * ends[axis][1].abs())
+        };
         let Some(k) = (0..4).find(|&k| on(k / 2, k % 2)) else { continue };
         if side[k].is_some_and(|other| other != edge.group) {
             return Err("a side of the mesh has edges of two groups".to_owned());
@@ -192,8 +212,7 @@ fn shifted(mesh: &Mesh, by: [f64; 2]) -> std::result::Result<Mesh, mesh::Error> 
     let links = mesh::links(mesh)?;
     for (cell, links) in links.iter().enumerate() {
         for (face, link) in links.iter().enumerate() {
-            let inner =
-                matches!(link, mesh::Link::Cell { cell: other, .. } if mesh.cell_group[*other] == mesh.cell_group[cell]);
+            let inner = matches!(link, mesh::Link::Cell { cell: other, .. } if mesh.cell_group[*other] == mesh.cell_group[cell]);
             if !inner {
                 mesh.face_nodes(cell, face).into_iter().for_each(|node| fixed[node] = true);
             }
@@ -206,7 +225,9 @@ fn shifted(mesh: &Mesh, by: [f64; 2]) -> std::result::Result<Mesh, mesh::Error> 
     // A node that leaves its cells may leave them all counter-clockwise: turned cells are refused, too.
     let turned = (0..out.cells.len()).find(|&cell| map::h_e(&out.corners(cell)) <= 0.0);
     match turned {
-        Some(cell) => Err(mesh::Error::Inconsistent { what: format!("cell {} would be turned inside out", out.number(cell)) }),
+        Some(cell) => {
+            Err(mesh::Error::Inconsistent { what: format!("cell {} would be turned inside out", out.number(cell)) })
+        }
         None => out.checked(),
     }
 }
@@ -285,10 +306,14 @@ fn gmsh(
             );
         }
         std::fs::write(&script, text).map_err(|why| fail(why.to_string()))?;
-        let run = Command::new("gmsh").args(["-2", "-v", "1", "-format", "msh41", "-o"]).arg(&out).arg(&script).output();
+        let run =
+            Command::new("gmsh").args(["-2", "-v", "1", "-format", "msh41", "-o"]).arg(&out).arg(&script).output();
         let run = run.map_err(|why| {
             let what = format!("cannot run `gmsh`: {why}");
-            (what, "install Gmsh (https://gmsh.info, or `pip install gmsh`) so that `gmsh` is on the path, or give `mesh`")
+            (
+                what,
+                "install Gmsh (https://gmsh.info, or `pip install gmsh`) so that `gmsh` is on the path, or give `mesh`",
+            )
         })?;
         if !run.status.success() {
             let said = String::from_utf8_lossy(&run.stderr);
@@ -339,12 +364,11 @@ mod tests {
         for edge in &mesh.edges {
             let name = mesh.edge_groups[edge.group].as_str();
             let x = mesh.face_nodes(edge.cell, edge.face).map(|node| mesh.nodes[node]);
-            let (axis, value) =
-                [("left", 0, 0.0), ("right", 0, 2.0), ("bottom", 1, 0.0), ("top", 1, 1.0)]
-                    .into_iter()
-                    .find(|(known, ..)| *known == name)
-                    .map(|(_, axis, value)| (axis, value))
-                    .unwrap();
+            let (axis, value) = [("left", 0, 0.0), ("right", 0, 2.0), ("bottom", 1, 0.0), ("top", 1, 1.0)]
+                .into_iter()
+                .find(|(known, ..)| *known == name)
+                .map(|(_, axis, value)| (axis, value))
+                .unwrap();
             assert!(x.iter().all(|x| x[axis] == value), "{name}: {x:?}");
         }
     }

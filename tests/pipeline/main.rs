@@ -2,6 +2,7 @@
 
 mod common;
 mod errors;
+mod regrid;
 mod stages;
 mod stops;
 mod times;

@@ -109,7 +109,9 @@ impl Series {
             if steps.is_empty() {
                 return collection.write_empty().map(drop);
             }
-            collection.write_inner_content(|xml| steps.iter().try_for_each(|s| step(xml, &file, s, size(s.grid)))).map(drop)
+            collection
+                .write_inner_content(|xml| steps.iter().try_for_each(|s| step(xml, &file, s, size(s.grid))))
+                .map(drop)
         })
     }
 }
