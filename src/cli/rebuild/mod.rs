@@ -1,6 +1,8 @@
 //! Another grid in mid-run: `[[regrid]]`. Mesh, points, operators and scheme are made anew and the state is brought over;
 //! time and step go on. Where grid and points are the same nothing is touched, so that no bit changes.
 
+mod outcome;
+
 use super::pipeline::{self, Body};
 use super::print::say;
 use crate::error::{Error, Result};
@@ -15,39 +17,13 @@ use crate::regrid::{self, Field, Grid, Transfer};
 use crate::run::{Folder, Pause};
 use crate::scene::grids::Present;
 use crate::scene::{Method, Scene, build};
-use crate::state::{State, UNKNOWNS};
+use crate::state::State;
 use crate::step::{Scheme, Totals};
+use outcome::{Clock, Outcome, columns};
 use std::collections::{HashMap, VecDeque};
-use std::time::Instant;
 
 /// Grids whose matrices are kept in memory, so that grids that alternate are built once.
 const KEPT: usize = 4;
-
-/// Names of the phases of a regrid, in order; `regrid.csv` has their seconds.
-pub const PHASES: [&str; 7] = ["mesh", "transfer", "points", "links", "matrices", "scheme", "files"];
-
-/// Columns of `regrid.csv` before the phases. Energies in J/m, areas in m^2.
-const COLUMNS: [&str; 19] = [
-    "step",
-    "t",
-    "rule",
-    "cells_before",
-    "cells",
-    "copied",
-    "points_before",
-    "points",
-    "points_kept",
-    "points_outside",
-    "kinetic_before",
-    "kinetic",
-    "strain_before",
-    "strain",
-    "momentum_1_change",
-    "momentum_2_change",
-    "deformation_change",
-    "transfer_error",
-    "uncovered",
-];
 
 /// A grid with everything that is built on it.
 pub struct Built {
@@ -217,10 +193,6 @@ fn write_grid(body: &Body, files: &GridFiles, folder: &Folder) -> Result<()> {
     cloud_file::write_cloud(&folder.root.join(&files.cloud), &body.cloud, &body.mesh)
 }
 
-fn columns() -> Vec<&'static str> {
-    [&COLUMNS[..], &PHASES[..]].concat()
-}
-
 fn key_of_files(body: &Body) -> String {
     hash::of_mesh(&body.mesh) + &hash::of_cloud(&body.cloud)
 }
@@ -257,129 +229,6 @@ pub fn place_points(
     let histories = scheme.laws.iter().any(|law| !law.internal().is_empty());
     let demand = Demand { line: &scheme.operators.line, policy, fresh: &fresh, samples, histories };
     place(from, cloud, to, &moved.same, &demand)
-}
-
-/// A regrid in numbers.
-struct Outcome<'a> {
-    rule: usize,
-    old: &'a Built,
-    new: &'a Built,
-    state: &'a State,
-    moved: &'a Transfer,
-    placed: &'a Placed,
-    totals: &'a [Totals; 2],
-}
-
-impl Outcome<'_> {
-    fn copied(&self) -> usize {
-        self.moved.same.iter().flatten().count()
-    }
-
-    /// The error in the standard measure: over sqrt(int |F - 1|^2 + |v|^2 / c_p^2).
-    fn error(&self) -> f64 {
-        let (scheme, u) = (&self.new.scheme, &self.moved.u);
-        let (n, scale) = (scheme.operators.nodes(), scale(scheme));
-        let mut sum = 0.0;
-        for (cell, u) in u.chunks_exact(self.state.components * n).enumerate() {
-            let (block, lane) = scheme.operators.blocks.slot[cell];
-            for a in 0..n {
-                let mass = scheme.operators.geometry.mass[block * n + a].0[lane];
-                for (k, scale) in scale[self.new.body.material[cell]].iter().enumerate().take(UNKNOWNS) {
-                    let rest = if k == 0 || k == 3 { 1.0 } else { 0.0 };
-                    sum += mass * scale * (u[k * n + a] - rest).powi(2);
-                }
-            }
-        }
-        if sum > 0.0 { self.moved.error / sum.sqrt() } else { self.moved.error }
-    }
-
-    fn row(&self, clock: &Clock) -> Vec<f64> {
-        let [before, after] = self.totals;
-        let change = |k: usize| after.momentum[k] - before.momentum[k];
-        let deformation =
-            before.deformation.iter().zip(after.deformation).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let count = |k: usize| k as f64;
-        let mut row = vec![
-            count(self.state.step),
-            self.state.time,
-            count(self.rule),
-            count(self.old.body.mesh.cells.len()),
-            count(self.new.body.mesh.cells.len()),
-            count(self.copied()),
-            count(self.old.body.cloud.len()),
-            count(self.placed.cloud.len()),
-            count(self.placed.kept.iter().filter(|kept| **kept).count()),
-            count(self.placed.outside),
-            before.kinetic,
-            after.kinetic,
-            before.strain,
-            after.strain,
-            change(0),
-            change(1),
-            deformation,
-            self.error(),
-            self.moved.uncovered[0] + self.moved.uncovered[1],
-        ];
-        row.extend(clock.seconds);
-        row
-    }
-
-    fn print(&self, clock: &Clock) {
-        let (state, [before, after]) = (self.state, self.totals);
-        let how = if self.moved.structured { "lines" } else { "clipping" };
-        say(format!(
-            "regrid at step {}, t = {:.6e} s: {} -> {} cells ({} copied, by {how}), {} -> {} points ({} kept)",
-            state.step,
-            state.time,
-            self.old.body.mesh.cells.len(),
-            self.new.body.mesh.cells.len(),
-            self.copied(),
-            self.old.body.cloud.len(),
-            self.placed.cloud.len(),
-            self.placed.kept.iter().filter(|kept| **kept).count(),
-        ));
-        say(format!(
-            "  error {:.3e}; kinetic {:.9e} -> {:.9e} J/m, strain {:.9e} -> {:.9e} J/m, momentum {:+.1e}, {:+.1e} kg/s",
-            self.error(),
-            before.kinetic,
-            after.kinetic,
-            before.strain,
-            after.strain,
-            after.momentum[0] - before.momentum[0],
-            after.momentum[1] - before.momentum[1],
-        ));
-        if self.moved.uncovered != [0.0; 2] {
-            let [new, old] = self.moved.uncovered;
-            say(format!(
-                "  the grids differ at their boundary: {new:.3e} m^2 of the new one filled, {old:.3e} m^2 of the old one left out"
-            ));
-        }
-        if self.placed.outside > 0 {
-            say(format!(
-                "  {} points lie outside of the new mesh, and are gone with their histories",
-                self.placed.outside
-            ));
-        }
-        let phases: Vec<String> = PHASES.iter().zip(clock.seconds).map(|(name, s)| format!("{name} {s:.4}")).collect();
-        say(format!("  seconds: {}", phases.join(", ")));
-    }
-}
-
-/// Seconds of the phases.
-struct Clock {
-    last: Instant,
-    seconds: [f64; PHASES.len()],
-}
-
-impl Clock {
-    fn new() -> Self {
-        Self { last: Instant::now(), seconds: [0.0; PHASES.len()] }
-    }
-
-    fn lap(&mut self, phase: usize) {
-        self.seconds[phase] = self.last.elapsed().as_secs_f64();
-        self.last = Instant::now();
-    }
 }
 
 impl Built {
