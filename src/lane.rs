@@ -3,13 +3,20 @@
 //! Fields are stored as plain [`F8`]; kernels are generic over a [`Lanes`] type that loads and stores
 //! them, and laws over a [`Lane`], of which `f64` is the single-lane case (boundaries, probes, tests).
 //! [`Kernel::run`] picks the widest type that the processor has and enters a function compiled for it, so
-//! that one portable binary runs everywhere. All `unsafe` of the program is in this file.
+//! that one portable binary runs everywhere. All `unsafe` of the program is in this module.
 //!
 //! Pitfall: every generic function on the hot path needs `#[inline(always)]`, and closures cannot have it (so no
 //! `array::map` there either): one that is not inlined is compiled without the processor's features, 4-6 times
 //! slower, silently. `tests/inlining.rs` looks for such calls in the binary.
 
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 pub mod counted;
+mod portable;
+mod twin;
+
+pub use portable::Portable;
+pub use twin::{Twin, apart, twins};
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -91,26 +98,33 @@ pub trait Lanes: Lane {
     fn store(self, to: &mut F8);
     /// From one number for each lane.
     fn from_lanes(numbers: [f64; LANES]) -> Self;
-    /// Rows of cells that begin in other lanes: lane l of each of `out` is lane l + r of `first` for l < 8 - r, then lane
-    /// l + r - 8 of `second`; r in 1..8.
+    /// K numbers of cells in rows that begin in other lanes: lane l of number k is lane l + r of `all[first + k]` for
+    /// l < 8 - r, then lane l + r - 8 of `all[second + k]`; r in 1..8.
     ///
     /// # Panics
-    /// Where the three are not of one length.
+    /// Where one of the two runs begins before the second number of `all`, or does not end before its last one. (Both may be
+    /// read a little beyond what is wanted.)
     #[inline(always)]
-    fn join(first: &[F8], second: &[F8], r: usize, out: &mut [F8]) {
-        assert!(first.len() == out.len() && second.len() == out.len());
-        for (out, (first, second)) in out.iter_mut().zip(first.iter().zip(second)) {
-            joined(first, second, r, out);
+    fn load_joined<const K: usize>(all: &[F8], first: usize, second: usize, r: usize) -> [Self; K] {
+        assert_within::<K>(all, first, second, r);
+        let mut out = [Self::zero(); K];
+        for (k, out) in out.iter_mut().enumerate() {
+            let mut lanes = [0.0; LANES];
+            for (lane, number) in lanes.iter_mut().enumerate() {
+                let at = lane + r;
+                *number = if at < LANES { all[first + k].0[at] } else { all[second + k].0[at - LANES] };
+            }
+            *out = Self::from_lanes(lanes);
         }
+        out
     }
 }
 
-/// [`Lanes::join`] of one number.
+/// What [`Lanes::load_joined`] asks for.
 #[inline(always)]
-fn joined(first: &F8, second: &F8, r: usize, out: &mut F8) {
-    for (lane, out) in out.0.iter_mut().enumerate() {
-        *out = if lane + r < LANES { first.0[lane + r] } else { second.0[lane + r - LANES] };
-    }
+fn assert_within<const K: usize>(all: &[F8], first: usize, second: usize, r: usize) {
+    let within = |start: usize| start >= 1 && start < all.len() && K < all.len() - start;
+    assert!(within(first) && within(second) && (1..LANES).contains(&r), "runs to join lie beyond the numbers");
 }
 
 /// K numbers that lie behind each other. (`array::from_fn` and `array::map` take closures, which are not inlined.)
@@ -232,82 +246,14 @@ impl Lane for f64 {
     }
 }
 
-/// Eight lanes as a plain array: every processor has it.
-#[derive(Debug, Clone, Copy)]
-pub struct Portable([f64; LANES]);
-
-macro_rules! portable_operator {
-    ($trait:ident, $method:ident) => {
-        impl $trait for Portable {
-            type Output = Portable;
-            #[inline(always)]
-            fn $method(self, other: Portable) -> Portable {
-                Portable(std::array::from_fn(|i| $trait::$method(self.0[i], other.0[i])))
-            }
-        }
-    };
-}
-portable_operator!(Add, add);
-portable_operator!(Sub, sub);
-portable_operator!(Mul, mul);
-portable_operator!(Div, div);
-
-impl Neg for Portable {
-    type Output = Portable;
-    #[inline(always)]
-    fn neg(self) -> Portable {
-        Portable(self.0.map(|x| -x))
-    }
-}
-
-impl Lane for Portable {
-    #[inline(always)]
-    fn splat(x: f64) -> Portable {
-        Portable([x; LANES])
-    }
-    #[inline(always)]
-    fn mul_add(self, b: Portable, c: Portable) -> Portable {
-        Portable(std::array::from_fn(|i| Lane::mul_add(self.0[i], b.0[i], c.0[i])))
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Portable {
-        Portable(self.0.map(f64::sqrt))
-    }
-    #[inline(always)]
-    fn min(self, other: Portable) -> Portable {
-        Portable(std::array::from_fn(|i| Lane::min(self.0[i], other.0[i])))
-    }
-    #[inline(always)]
-    fn max(self, other: Portable) -> Portable {
-        Portable(std::array::from_fn(|i| Lane::max(self.0[i], other.0[i])))
-    }
-    #[inline(always)]
-    fn inverse_cube_root_guess(self) -> Portable {
-        Portable(self.0.map(Lane::inverse_cube_root_guess))
-    }
-}
-
-impl Lanes for Portable {
-    #[inline(always)]
-    fn load(from: &F8) -> Portable {
-        Portable(from.0)
-    }
-    #[inline(always)]
-    fn store(self, to: &mut F8) {
-        to.0 = self.0;
-    }
-    #[inline(always)]
-    fn from_lanes(numbers: [f64; LANES]) -> Portable {
-        Portable(numbers)
-    }
-}
-
+#[cfg(target_arch = "x86_64")]
+pub use avx512::Avx512;
 #[cfg(target_arch = "x86_64")]
 pub use x86::Avx2;
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    use super::{CUBE_ROOT_MAGIC, F8, LANES, Lane, Lanes, Work, as_f64, joined};
+    use super::{CUBE_ROOT_MAGIC, F8, LANES, Lane, Lanes, Work, as_f64, assert_within};
     use std::arch::x86_64::*;
     use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -410,24 +356,23 @@ mod x86 {
             unsafe { Avx2(_mm256_setr_pd(n[0], n[1], n[2], n[3]), _mm256_setr_pd(n[4], n[5], n[6], n[7])) }
         }
         #[inline(always)]
-        fn join(first: &[F8], second: &[F8], r: usize, out: &mut [F8]) {
-            assert!(first.len() == out.len() && second.len() == out.len() && r < LANES);
-            // At the ends there may be nothing to read beside what is wanted.
-            let Some(last) = out.len().checked_sub(1) else { return };
-            for k in [0, last] {
-                joined(&first[k], &second[k], r, &mut out[k]);
-            }
-            let (one, two) = (as_f64(first).as_ptr(), as_f64(second).as_ptr());
-            // SAFETY: see Avx2; 8 k + r to 8 k + r + 7 and 8 k + r - 8 to 8 k + r - 1 lie within both for 0 < k < last.
+        fn load_joined<const K: usize>(all: &[F8], first: usize, second: usize, r: usize) -> [Avx2; K] {
+            assert_within::<K>(all, first, second, r);
+            let numbers = as_f64(all).as_ptr();
+            let mut out = [Avx2::splat(0.0); K];
+            // SAFETY: see Avx2. Of number k are read 8 (first + k) + r and 7 more, and 8 (second + k) + r - 8 and 7 more: they
+            // lie within `all`, since there is one number at least before and behind both runs.
             unsafe {
                 let masks = [_mm256_loadu_pd(SECOND.as_ptr().add(r)), _mm256_loadu_pd(SECOND.as_ptr().add(r + 4))];
-                for k in 1..last {
-                    let (one, two) = (one.add(LANES * k + r), two.add(LANES * k + r - LANES));
+                let (one, two) = (numbers.add(LANES * first + r), numbers.add(LANES * (second - 1) + r));
+                for k in 0..K {
+                    let (one, two) = (one.add(LANES * k), two.add(LANES * k));
                     let low = _mm256_blendv_pd(_mm256_loadu_pd(one), _mm256_loadu_pd(two), masks[0]);
                     let high = _mm256_blendv_pd(_mm256_loadu_pd(one.add(4)), _mm256_loadu_pd(two.add(4)), masks[1]);
-                    Avx2(low, high).store(out.get_unchecked_mut(k));
+                    out[k] = Avx2(low, high);
                 }
             }
+            out
         }
     }
 
@@ -452,17 +397,20 @@ pub trait Work {
 /// path repeats a run bit for bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kernel {
+    /// AVX-512F.
+    Avx512,
     /// AVX2 with fused multiplication.
     Avx2,
-    /// Plain arrays: every processor.
+    /// Pairs of numbers: every processor.
     Portable,
-    /// Plain arrays that count their operations, see [`counted`]: for measurements, never for speed.
+    /// One number that stands for all, with its operations counted, see [`counted`]: for measurements, never for speed.
     Counting,
 }
 
 impl Kernel {
-    /// The paths that a user may name.
-    pub const NAMES: &'static [(&'static str, Kernel)] = &[("avx2", Kernel::Avx2), ("portable", Kernel::Portable)];
+    /// The paths that a user may name, the widest first.
+    pub const NAMES: &'static [(&'static str, Kernel)] =
+        &[("avx512", Kernel::Avx512), ("avx2", Kernel::Avx2), ("portable", Kernel::Portable)];
 
     /// The name in options and tables.
     pub fn name(self) -> &'static str {
@@ -470,32 +418,51 @@ impl Kernel {
     }
 
     /// Whether this processor has it.
+    #[inline]
     pub fn is_available(self) -> bool {
-        self != Kernel::Avx2 || Kernel::widest() == Kernel::Avx2
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx512 => is_x86_feature_detected!("avx512f"),
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
+            #[cfg(not(target_arch = "x86_64"))]
+            Kernel::Avx512 | Kernel::Avx2 => false,
+            Kernel::Portable | Kernel::Counting => true,
+        }
     }
 
     /// The widest that this processor has.
     pub fn widest() -> Kernel {
-        #[cfg(target_arch = "x86_64")]
-        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-            return Kernel::Avx2;
-        }
-        Kernel::Portable
+        let all = Self::NAMES.iter().map(|(_, kernel)| *kernel);
+        all.into_iter().find(|kernel| kernel.is_available()).unwrap_or(Kernel::Portable)
     }
 
     /// Does the work on this path (on the portable one where the processor lacks it).
     #[inline]
     pub fn run<W: Work>(self, work: W) -> W::Out {
-        #[cfg(target_arch = "x86_64")]
-        if self == Kernel::Avx2 && is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-            // SAFETY: the processor has both features.
-            return unsafe { x86::enter_avx2(work) };
+        match self {
+            // SAFETY: the processor has the features.
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx512 if self.is_available() => unsafe { avx512::enter_avx512(work) },
+            // SAFETY: the processor has the features.
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx2 if self.is_available() => unsafe { x86::enter_avx2(work) },
+            Kernel::Counting => enter_counted(work),
+            _ => enter_portable(work),
         }
-        if self == Kernel::Counting {
-            return work.run::<counted::Counted>();
-        }
-        work.run::<Portable>()
     }
+}
+
+// Functions of their own, as `enter_avx2` is: each is compiled once, not once for every caller.
+
+#[inline(never)]
+fn enter_portable<W: Work>(work: W) -> W::Out {
+    work.run::<Portable>()
+}
+
+#[inline(never)]
+fn enter_counted<W: Work>(work: W) -> W::Out {
+    work.run::<counted::Counted>()
 }
 
 #[cfg(test)]
@@ -513,33 +480,34 @@ mod tests {
         }
     }
 
-    struct Join<'a>(&'a [F8], &'a [F8], usize);
+    /// Three numbers from both runs.
+    struct Join<'a>(&'a [F8], usize);
     impl Work for Join<'_> {
-        type Out = Vec<F8>;
+        type Out = [F8; 3];
         #[inline(always)]
-        fn run<L: Lanes>(self) -> Vec<F8> {
-            let mut out = vec![F8::ZERO; self.0.len()];
-            L::join(self.0, self.1, self.2, &mut out);
+        fn run<L: Lanes>(self) -> [F8; 3] {
+            let mut out = [F8::ZERO; 3];
+            store_array(L::load_joined::<3>(self.0, 5, 1, self.1), &mut out);
             out
         }
     }
 
     #[test]
-    fn join_takes_the_end_of_one_and_the_start_of_the_other_on_every_path() {
-        for count in 0..5 {
-            let of = |start: usize| -> Vec<F8> {
-                (0..count).map(|k| F8(std::array::from_fn(|lane| (start + 8 * k + lane) as f64))).collect()
-            };
-            let (first, second) = (of(0), of(100));
-            for r in 1..8 {
-                for kernel in [Kernel::Portable, Kernel::widest()] {
-                    for (k, out) in kernel.run(Join(&first, &second, r)).iter().enumerate() {
-                        let both: Vec<f64> = first[k].0.iter().chain(&second[k].0).copied().collect();
-                        assert_eq!(out.0, both[r..r + 8], "{k} {r}");
-                    }
+    fn joined_numbers_are_the_end_of_one_and_the_start_of_the_other_on_every_path() {
+        let all: Vec<F8> = (0..9).map(|k| F8(std::array::from_fn(|lane| (8 * k + lane) as f64))).collect();
+        for r in 1..8 {
+            for kernel in paths() {
+                for (k, out) in kernel.run(Join(&all, r)).iter().enumerate() {
+                    let both: Vec<f64> = all[5 + k].0.iter().chain(&all[1 + k].0).copied().collect();
+                    assert_eq!(out.0, both[r..r + 8], "{kernel:?} {k} {r}");
                 }
             }
         }
+    }
+
+    /// All that this processor has.
+    fn paths() -> impl Iterator<Item = Kernel> {
+        Kernel::NAMES.iter().map(|(_, kernel)| *kernel).filter(|kernel| kernel.is_available())
     }
 
     struct EveryOperation(F8, F8);
@@ -563,10 +531,12 @@ mod tests {
         fn all_paths_agree_to_the_rounding_of_one_fused_multiplication(
             a in prop::array::uniform8(1e-3..1e3f64), b in prop::array::uniform8(1e-3..1e3f64)) {
             let portable = Kernel::Portable.run(EveryOperation(F8(a), F8(b)));
-            let widest = Kernel::widest().run(EveryOperation(F8(a), F8(b)));
-            for (p, w) in as_f64(&portable).iter().zip(as_f64(&widest)) {
-                // Products reach 1e6 and may cancel: four roundings of 1e6 * 2^-52 = 2.3e-10.
-                prop_assert!((p - w).abs() <= 4.0 * 2.3e-10);
+            for kernel in paths() {
+                let other = kernel.run(EveryOperation(F8(a), F8(b)));
+                for (p, w) in as_f64(&portable).iter().zip(as_f64(&other)) {
+                    // Products reach 1e6 and may cancel: four roundings of 1e6 * 2^-52 = 2.3e-10.
+                    prop_assert!((p - w).abs() <= 4.0 * 2.3e-10);
+                }
             }
         }
     }

@@ -1,4 +1,4 @@
-//! The hot path is compiled for the processor's features: no intrinsic of AVX2 stands in the program as a function of
+//! The hot path is compiled for the processor's features: no intrinsic of AVX2 or AVX-512 stands in the program as a function of
 //! its own. One that does was called from code without the features (a generic function without `#[inline(always)]`, or
 //! a closure), which is 4 to 6 times slower, silently: see `src/lane.rs`.
 #![cfg(all(target_arch = "x86_64", target_os = "linux"))]
@@ -7,7 +7,7 @@ use object::{Object, ObjectSymbol, SymbolKind};
 
 /// Whether a function is an intrinsic that should have become one instruction.
 fn is_lost_intrinsic(name: &str) -> bool {
-    name.starts_with("core::core_arch::") && name.contains("::_mm256_")
+    name.starts_with("core::core_arch::") && (name.contains("::_mm256_") || name.contains("::_mm512_"))
 }
 
 /// Demangled names of the functions of a program.
@@ -25,7 +25,9 @@ fn no_intrinsic_stands_alone_in_the_program() {
     let names = functions(&std::fs::read(env!("CARGO_BIN_EXE_dgmpm")).unwrap());
     // The symbol table is there, and the entry to the kernels is in it.
     assert!(names.len() > 1000, "only {} functions", names.len());
-    assert!(names.iter().any(|name| name.contains("enter_avx2")), "no `enter_avx2`");
+    for entry in ["enter_avx2", "enter_avx512"] {
+        assert!(names.iter().any(|name| name.contains(entry)), "no `{entry}`");
+    }
     let lost: Vec<&String> = names.iter().filter(|name| is_lost_intrinsic(name)).collect();
     assert!(
         lost.is_empty(),

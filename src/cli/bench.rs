@@ -27,7 +27,7 @@ pub struct Args {
     /// Law, with the constants of the paper's steel
     #[arg(long, value_name = "NAME", default_value = "neo-hookean")]
     law: String,
-    /// Instruction set: avx2 or portable [default: the widest of this processor]
+    /// Instruction set: avx512, avx2 or portable [default: the widest of this processor]
     #[arg(long, value_name = "NAME")]
     kernel: Option<String>,
     /// Threads

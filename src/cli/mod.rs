@@ -103,7 +103,7 @@ struct RunArgs {
     /// Threads [default: all processors]; the results do not depend on it
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// Instruction set: avx2 or portable [default: the widest of this processor]; results differ in the last digits
+    /// Instruction set: avx512, avx2 or portable [default: the widest of this processor]; results differ in the last digits
     #[arg(long, value_name = "NAME")]
     kernel: Option<String>,
 }
@@ -139,9 +139,6 @@ fn kernel(name: Option<&str>) -> Result<Kernel> {
     match known {
         Some(kernel) if kernel.is_available() => Ok(kernel),
         Some(_) => Err(Error::input(format!("this processor has no {name}"), remedy)),
-        None if name == "avx512" => {
-            Err(Error::input("--kernel avx512: this version has no kernels for AVX-512 yet", remedy))
-        }
         None => Err(Error::input(format!("there is no kernel `{name}`"), remedy)),
     }
 }

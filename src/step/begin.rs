@@ -39,17 +39,17 @@ pub(super) struct Block<'a> {
 }
 
 /// G2P, predictor and P2G.
-struct Predict<'a, 'b>(&'a mut Block<'b>, &'a Points);
+struct Predict<'a, 'b>(&'a mut Block<'b>, &'a Points, &'a mut Clock);
 
 impl Work for Predict<'_, '_> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self(block, points) = self;
+        let Self(block, points, clock) = self;
         with_law!(&block.scheme.laws[block.scheme.operators.blocks.material[block.block]], law => {
             // A copy: what is stored in the predictor cannot change it, so its constants stay in registers.
             let law = *law;
-            block.predict_with::<L, _>(&law, points);
+            block.predict_with::<L, _>(&law, points, clock);
         });
     }
 }
@@ -100,10 +100,10 @@ impl Block<'_> {
         let (kernel, operators) = (self.scheme.kernel, &self.scheme.operators);
         let (line, n) = (&operators.line, operators.nodes());
         let metric = Metric::of(&operators.geometry, self.block, n);
-        let mut clock = Clock::now();
+        let mut clock = self.scratch.phases.clock();
         match &operators.points {
             None => self.stage(&mut clock),
-            Some(points) => kernel.run(Predict(&mut self, points)),
+            Some(points) => kernel.run(Predict(&mut self, points, &mut clock)),
         }
         with_nodes!(line.m, M => kernel.run(volume::Volume::<'_, M> {
             line,
@@ -157,11 +157,10 @@ impl Block<'_> {
     }
 
     #[inline(always)]
-    fn predict_with<L: Lanes, M: Material>(&mut self, law: &M, points: &Points) {
-        let mut clock = Clock::now();
+    fn predict_with<L: Lanes, M: Material>(&mut self, law: &M, points: &Points, clock: &mut Clock) {
         match points.pool.share[self.block] {
-            Share::Shared(k) => self.predict::<L, M, _>(law, points, &points.pool.shared[k], &mut clock),
-            Share::Own(k) => self.predict::<L, M, _>(law, points, &points.pool.own[k], &mut clock),
+            Share::Shared(k) => self.predict::<L, M, _>(law, points, &points.pool.shared[k], clock),
+            Share::Own(k) => self.predict::<L, M, _>(law, points, &points.pool.own[k], clock),
         }
     }
 

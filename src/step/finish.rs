@@ -1,7 +1,6 @@
 //! `finish`: with the neighbours' traces, flux (3), lift (14), and after the last stage the update (13) and LCF.
 
 use super::balance::{self, Sums};
-use super::phase::Clock;
 use super::sums::Terms;
 use super::volume::{Metric, row, with_nodes};
 use super::{Phase, Scheme, Scratch, Stage, Survey, curl, flux};
@@ -26,10 +25,8 @@ pub(super) struct Block<'a> {
     pub before: &'a [F8],
     /// dU/dt of this block: volume part in, all out.
     pub rate: &'a mut [F8],
-    /// Traces under way, [slot][face][point][width].
-    pub traces: &'a [F8],
-    /// The slot of each block.
-    pub slots: &'a [u32],
+    /// Traces under way.
+    pub traces: flux::Traces<'a>,
     /// New unknowns of this block (out, after the last stage).
     pub next: &'a mut [F8],
     /// Its balance of energy; none where it is off.
@@ -42,9 +39,9 @@ impl Block<'_> {
     /// All of it.
     pub fn run(mut self) {
         let (kernel, operators) = (self.scheme.kernel, &self.scheme.operators);
-        let mut clock = Clock::now();
+        let mut clock = self.scratch.phases.clock();
         let place = flux::Place { scheme: self.scheme, stage: self.stage, block: self.block };
-        flux::lift(place, self.traces, self.slots, &mut self.scratch.nodes, self.sums.as_deref_mut());
+        flux::lift(place, self.traces, &mut self.scratch.nodes, self.sums.as_deref_mut());
         let (inverse_mass, lift) = (place.metric().inverse_mass, &self.scratch.nodes.lift);
         let line = &operators.line;
         with_nodes!(line.m, M => kernel.run(Lift::<'_, M> { line, inverse_mass, lift, rate: self.rate }));

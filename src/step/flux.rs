@@ -53,35 +53,74 @@ fn turned<L: Lanes, const W: usize>(mut x: [L; W]) -> [L; W] {
     x
 }
 
-/// Where the traces of a face, numbered 4 block + local face, lie among those under way.
-#[inline(always)]
-fn face_in(slots: &[u32], face: usize) -> usize {
-    4 * slots[face / 4] as usize + face % 4
-}
-
-/// How the traces across a face lie apart.
+/// All traces under way.
 #[derive(Clone, Copy)]
-enum Apart<'a> {
-    /// See [`Side::Joined`].
-    Joined { first: usize, second: usize, by: usize },
-    /// Lane by lane.
-    Anywhere(&'a [Across; LANES]),
+pub(super) struct Traces<'a> {
+    /// One number, then [slot][face][point][width], then one more.
+    pub all: &'a [F8],
+    /// The slot of each block.
+    pub slots: &'a [u32],
 }
 
-/// Traces that lie apart, in the order of the points of this side.
-struct Collect<'a> {
-    /// Traces under way, [slot][face][point][width].
-    traces: &'a [F8],
-    /// The slot of each block.
-    slots: &'a [u32],
-    from: Apart<'a>,
+impl<'a> Traces<'a> {
+    /// Where those of a face begin, numbered 4 block + local face, with `length` numbers each.
+    #[inline(always)]
+    fn face(&self, face: usize, length: usize) -> usize {
+        1 + (4 * self.slots[face / 4] as usize + face % 4) * length
+    }
+
+    /// Those of `count` faces.
+    #[inline(always)]
+    fn faces(&self, face: usize, count: usize, length: usize) -> &'a [F8] {
+        &self.all[self.face(face, length)..][..count * length]
+    }
+}
+
+/// The traces across a face of a block.
+#[derive(Clone, Copy)]
+enum Beyond<'a> {
+    /// [point][width], each lane's in the same lane.
+    Aligned(&'a [F8]),
+    /// In two runs of all traces, see [`Lanes::load_joined`].
+    Joined { all: &'a [F8], first: usize, second: usize, by: usize },
+}
+
+impl Beyond<'_> {
+    /// The numbers of a point.
+    #[inline(always)]
+    fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
+        match *self {
+            Beyond::Aligned(traces) => load_array(&traces[point * W..][..W]),
+            Beyond::Joined { all, first, second, by } => L::load_joined(all, first + point * W, second + point * W, by),
+        }
+    }
+
+    /// Number k of all points in one lane.
+    fn number(&self, k: usize, lane: usize) -> f64 {
+        match *self {
+            Beyond::Aligned(traces) => traces[k].0[lane],
+            Beyond::Joined { all, first, .. } if lane + self.by() < LANES => all[first + k].0[lane + self.by()],
+            Beyond::Joined { all, second, .. } => all[second + k].0[lane + self.by() - LANES],
+        }
+    }
+
+    /// By how many lanes it is moved.
+    fn by(&self) -> usize {
+        if let Beyond::Joined { by, .. } = self { *by } else { 0 }
+    }
+}
+
+/// Traces that lie anywhere, lane by lane, in the order of the points of this side.
+struct Gather<'a> {
+    traces: Traces<'a>,
+    from: &'a [Across; LANES],
     /// Numbers of a trace.
     width: usize,
     /// [point][width], out.
     out: &'a mut [F8],
 }
 
-impl Work for Collect<'_> {
+impl Work for Gather<'_> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
@@ -94,27 +133,19 @@ impl Work for Collect<'_> {
     }
 }
 
-impl Collect<'_> {
+impl Gather<'_> {
     #[inline(always)]
     fn with<L: Lanes, const W: usize>(self) {
         let out = self.out.as_chunks_mut::<W>().0;
-        match self.from {
-            Apart::Joined { first, second, by } => {
-                let of = |face: usize| &self.traces[face_in(self.slots, face) * out.len() * W..][..out.len() * W];
-                L::join(of(first), of(second), by, out.as_flattened_mut());
-            }
-            Apart::Anywhere(across) => {
-                let (m, stride) = (out.len(), (W * LANES) as isize);
-                let (mut first, mut step) = ([0; LANES], [stride; LANES]);
-                for lane in 0..LANES {
-                    let there = &across[lane];
-                    let point = if there.flip { m - 1 } else { 0 };
-                    first[lane] = (face_in(self.slots, there.face) * m + point) * W * LANES + there.lane;
-                    step[lane] = if there.flip { -stride } else { stride };
-                }
-                gather_run::<L, W>(self.traces, &first, &step, out);
-            }
+        let (m, stride) = (out.len(), (W * LANES) as isize);
+        let (mut first, mut step) = ([0; LANES], [stride; LANES]);
+        for lane in 0..LANES {
+            let there = &self.from[lane];
+            let point = if there.flip { m - 1 } else { 0 };
+            first[lane] = (self.traces.face(there.face, m * W) + point * W) * LANES + there.lane;
+            step[lane] = if there.flip { -stride } else { stride };
         }
+        gather_run::<L, W>(self.traces.all, &first, &step, out);
     }
 }
 
@@ -124,8 +155,8 @@ struct Faces<'a> {
     metered: bool,
     /// Own traces, [face][point][width].
     own: &'a [F8],
-    /// The other side's, by face, [point][width], with its own normal.
-    other: [&'a [F8]; 4],
+    /// The other side's, by face, with its own normal.
+    other: [Beyond<'a>; 4],
     metric: Metric<'a>,
     /// Weights of the points of a face.
     weights: &'a [f64],
@@ -138,27 +169,32 @@ impl Work for Faces<'_> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
-        with_width!(self.flux, self.metered, riemann, W => self.with::<L, _, W>(riemann));
+        with_width!(self.flux, self.metered, riemann, W => {
+            for face in 0..4 {
+                // One loop for each way in which the traces lie: none looks at it point by point.
+                match self.other[face] {
+                    Beyond::Aligned(_) => self.of_face::<L, _, W>(face, riemann),
+                    Beyond::Joined { .. } => self.of_face::<L, _, W>(face, riemann),
+                }
+            }
+        });
     }
 }
 
 impl Faces<'_> {
     #[inline(always)]
-    fn with<L: Lanes, R: Riemann, const W: usize>(&mut self, riemann: &R) {
-        let m = self.weights.len();
+    fn of_face<L: Lanes, R: Riemann, const W: usize>(&mut self, face: usize, riemann: &R) {
+        let (m, other) = (self.weights.len(), self.other[face]);
         let density = L::splat(self.density);
-        for face in 0..4 {
-            let own = &self.own.as_chunks::<W>().0[face * m..(face + 1) * m];
-            let other = &self.other[face].as_chunks::<W>().0[..m];
-            let normal = load_array::<L, 2>(&self.metric.normal[2 * face..2 * face + 2]);
-            let length = L::load(&self.metric.length[face]);
-            let lift = &mut self.lift.as_chunks_mut::<6>().0[m * face..m * (face + 1)];
-            for point in 0..m {
-                let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[point]));
-                let plus = trace_of::<L, R, W>(&turned(load_array::<L, W>(&other[point])));
-                let scale = length * L::splat(self.weights[point]);
-                store_array(riemann.lifted(&minus, &plus, normal, density, scale), &mut lift[point]);
-            }
+        let own = &self.own.as_chunks::<W>().0[face * m..(face + 1) * m];
+        let normal = load_array::<L, 2>(&self.metric.normal[2 * face..2 * face + 2]);
+        let length = L::load(&self.metric.length[face]);
+        let lift = &mut self.lift.as_chunks_mut::<6>().0[m * face..m * (face + 1)];
+        for point in 0..m {
+            let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[point]));
+            let plus = trace_of::<L, R, W>(&turned(other.load::<L, W>(point)));
+            let scale = length * L::splat(self.weights[point]);
+            store_array(riemann.lifted(&minus, &plus, normal, density, scale), &mut lift[point]);
         }
     }
 }
@@ -177,7 +213,7 @@ struct Sides<'a> {
     face: usize,
     own: &'a [F8],
     /// With its own normal; lanes at a boundary see themselves or what they must not use.
-    other: &'a [F8],
+    other: Beyond<'a>,
 }
 
 /// What a face adds to the balance of the block. The fluxes are found once more: without the balance they never come to
@@ -206,9 +242,8 @@ impl Meter<'_, '_> {
         let normal = load_array::<L, 2>(&metric.normal[2 * face..2 * face + 2]);
         let density = L::splat(place.law().density());
         let weights = &scheme.operators.line.basis.weights[..scheme.operators.line.m];
-        let points = sides.own.as_chunks::<W>().0.iter().zip(sides.other.as_chunks::<W>().0);
-        for (point, ((own, other), weight)) in points.zip(weights).enumerate() {
-            let beyond = turned(load_array::<L, W>(other));
+        for (point, (own, weight)) in sides.own.as_chunks::<W>().0.iter().zip(weights).enumerate() {
+            let beyond = turned(sides.other.load::<L, W>(point));
             let minus = trace_of::<L, R, W>(&load_array::<L, W>(own));
             let plus = trace_of::<L, R, W>(&beyond);
             let (mut flux, mut there, mut scale) = ([F8::ZERO; 6], [F8::ZERO; W], F8::ZERO);
@@ -216,7 +251,7 @@ impl Meter<'_, '_> {
             store_array(beyond, &mut there);
             (L::load(&metric.length[face]) * L::splat(*weight) * L::splat(factor)).store(&mut scale);
             for (lane, neighbour) in neighbours.iter().enumerate() {
-                let Some(special) = place.special(face, point, lane, [own, other]) else { continue };
+                let Some(special) = place.special(face, point, lane, own, sides.other) else { continue };
                 (0..6).for_each(|k| flux[k].0[lane] = special[k]);
                 if matches!(neighbour, Neighbour::Boundary(_)) {
                     // Lanes at a boundary see themselves: they have no jumps.
@@ -231,32 +266,32 @@ impl Meter<'_, '_> {
     }
 }
 
-/// Lifted numbers of all faces of a block, from the traces in the `slots` of the blocks, into `nodes.lift`; what they add to the balance
-/// into `sums`.
-pub(super) fn lift(place: Place, traces: &[F8], slots: &[u32], nodes: &mut Arrays, mut sums: Option<&mut Sums>) {
+/// Lifted numbers of all faces of a block into `nodes.lift`; what they add to the balance into `sums`.
+pub(super) fn lift(place: Place, traces: Traces, nodes: &mut Arrays, mut sums: Option<&mut Sums>) {
     let Place { scheme, block, .. } = place;
     let (blocks, m) = (&scheme.operators.blocks, scheme.operators.line.m);
     let (flux, metered) = (scheme.flux, sums.is_some());
     let width = width(flux.has_shear(), metered);
     let length = m * width;
     let plan = &blocks.plan[block];
-    let mut other: [&[F8]; 4] = [&[]; 4];
+    let mut other = [Beyond::Aligned(&[]); 4];
     let mut room = &mut nodes.across[..];
     for face in 0..4 {
-        let from = match plan[face].side {
-            Side::Aligned(there) => {
-                other[face] = &traces[face_in(slots, there) * length..][..length];
-                continue;
+        other[face] = match plan[face].side {
+            Side::Aligned(there) => Beyond::Aligned(traces.faces(there, 1, length)),
+            Side::Joined { first, second, by } => {
+                let [first, second] = [first, second].map(|there| traces.face(there, length));
+                Beyond::Joined { all: traces.all, first, second, by }
             }
-            Side::Joined { first, second, by } => Apart::Joined { first, second, by },
-            Side::Gathered(entry) => Apart::Anywhere(&blocks.gathered[entry]),
+            Side::Gathered(entry) => {
+                let (out, rest) = room.split_at_mut(length);
+                room = rest;
+                scheme.kernel.run(Gather { traces, from: &blocks.gathered[entry], width, out });
+                Beyond::Aligned(out)
+            }
         };
-        let (out, rest) = room.split_at_mut(length);
-        room = rest;
-        scheme.kernel.run(Collect { traces, slots, from, width, out });
-        other[face] = out;
     }
-    let own = &traces[face_in(slots, 4 * block) * length..][..4 * length];
+    let own = traces.faces(4 * block, 4, length);
     let (metric, weights, density) = (place.metric(), &scheme.operators.line.basis.weights[..m], place.law().density());
     scheme.kernel.run(Faces { flux, metered, own, other, metric, weights, density, lift: &mut nodes.lift });
     for face in 0..4 {
@@ -288,10 +323,9 @@ impl<'a> Place<'a> {
     fn put_right(&self, sides: Sides, lift: &mut [F8]) {
         let (metric, line, face) = (self.metric(), &self.scheme.operators.line, sides.face);
         let width = sides.own.len() / line.m;
-        let points = sides.own.chunks_exact(width).zip(sides.other.chunks_exact(width));
-        for (point, ((own, other), lift)) in points.zip(lift.as_chunks_mut::<6>().0).enumerate() {
+        for (point, (own, lift)) in sides.own.chunks_exact(width).zip(lift.as_chunks_mut::<6>().0).enumerate() {
             for lane in 0..LANES {
-                let Some(flux) = self.special(face, point, lane, [own, other]) else { continue };
+                let Some(flux) = self.special(face, point, lane, own, sides.other) else { continue };
                 let scale = metric.length[face].0[lane] * line.basis.weights[point];
                 for (k, flux) in flux.iter().enumerate() {
                     let own =
@@ -302,29 +336,27 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// The flux of a lane at a boundary or at another material, from the numbers of both sides, each with its own normal;
-    /// none elsewhere.
-    fn special(&self, face: usize, point: usize, lane: usize, sides: [&[F8]; 2]) -> Option<[f64; 6]> {
+    /// The flux of a lane at a boundary or at another material, from the `own` numbers at a point and the traces of the other
+    /// side, each with its own normal; none elsewhere.
+    fn special(&self, face: usize, point: usize, lane: usize, own: &[F8], other: Beyond) -> Option<[f64; 6]> {
         let neighbour = &self.scheme.operators.blocks.neighbours[self.block][face][lane];
         if matches!(neighbour, Neighbour::Cell(_) | Neighbour::Padding) {
             return None;
         }
         let law = self.law();
         let at = self.face_point(face, point, lane, law.density());
-        let trace = |side: usize, law: &Law| {
-            let x = |k: usize| sides[side][k].0[lane];
+        let trace = |x: &dyn Fn(usize) -> f64, sign: f64, law: &Law| {
             let f = [x(0), x(1), x(2), x(3)];
             let c = if self.scheme.flux.has_shear() { [x(8), x(9)] } else { law.speeds(f, at.normal) };
-            let sign = if side == 0 { 1.0 } else { -1.0 };
             Trace { f, v: [x(4), x(5)], t: [sign * x(6), sign * x(7)], c }
         };
+        let minus = trace(&|k| own[k].0[lane], 1.0, law);
         match *neighbour {
-            Neighbour::Boundary(group) => {
-                Some(self.scheme.boundaries[group].flux(&trace(0, law), &at, self.stage.times))
-            }
+            Neighbour::Boundary(group) => Some(self.scheme.boundaries[group].flux(&minus, &at, self.stage.times)),
             Neighbour::Interface(_, material) => {
-                let other = &self.scheme.laws[material];
-                Some(interface(&trace(0, law), &trace(1, other), at.normal, [law.density(), other.density()]))
+                let beyond = &self.scheme.laws[material];
+                let plus = trace(&|k| other.number(point * own.len() + k, lane), -1.0, beyond);
+                Some(interface(&minus, &plus, at.normal, [law.density(), beyond.density()]))
             }
             Neighbour::Cell(_) | Neighbour::Padding => None,
         }

@@ -106,7 +106,7 @@ impl Work {
             Mutex::new(Scratch {
                 points: predictor::Arrays::new(points, operators.line.m, &scheme.method, !scheme.sources.is_empty()),
                 nodes: volume::Arrays::new(operators.line.m, state.components),
-                phases: phase::Ticks::default(),
+                phases: phase::Ticks::of(2 * operators.blocks.len() * scheme.stages()),
             })
         };
         Self {
@@ -123,7 +123,7 @@ impl Work {
         let (mut sum, rate) = (Phases::default(), self.rate.measure());
         for scratch in &mut self.scratch {
             let scratch = scratch.get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());
-            sum.add(&std::mem::take(&mut scratch.phases).seconds(rate));
+            sum.add(&scratch.phases.take(rate));
         }
         sum
     }

@@ -58,53 +58,75 @@ impl Phases {
 }
 
 /// Reads the clock between phases. The phases of a block last about a microsecond: the processor's own counter is read,
-/// at a tenth of the cost of the system's clock.
+/// at a tenth of the cost of the system's clock, and where there are many blocks only for some of them.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Clock(u64);
-
-impl Clock {
-    /// Starts.
-    #[inline(always)]
-    pub fn now() -> Self {
-        Self(ticks())
-    }
+pub(crate) struct Clock {
+    /// Ticks at the start of the phase.
+    start: u64,
+    /// For how many blocks it stands; 0 where it is not read.
+    weight: u32,
 }
 
 /// Ticks per phase of one thread.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Ticks([u64; PHASES]);
+pub(crate) struct Ticks {
+    sums: [u64; PHASES],
+    /// The clock is read for one in so many; 0 is as 1.
+    every: u32,
+    /// Since it was read.
+    turn: u32,
+}
 
 impl Ticks {
-    /// Books the time since `start` on a phase and starts the next.
+    /// For a thread that begins and finishes blocks `events` times a step: where that is often, one in seven is looked at, a
+    /// number that no pattern of stages is a multiple of.
+    pub fn of(events: usize) -> Self {
+        Self { every: if events > 2000 { 7 } else { 1 }, ..Self::default() }
+    }
+
+    /// Starts, for one block.
     #[inline(always)]
-    pub fn book(&mut self, phase: Phase, start: &mut Clock) {
-        let now = Clock::now();
-        self.0[phase as usize] += now.0.wrapping_sub(start.0);
-        *start = now;
+    pub fn clock(&mut self) -> Clock {
+        self.turn += 1;
+        if self.turn < self.every {
+            return Clock { start: 0, weight: 0 };
+        }
+        self.turn = 0;
+        Clock { start: ticks(), weight: self.every.max(1) }
+    }
+
+    /// Books the time since the start of `clock` on a phase and starts the next.
+    #[inline(always)]
+    pub fn book(&mut self, phase: Phase, clock: &mut Clock) {
+        if clock.weight > 0 {
+            let now = ticks();
+            self.sums[phase as usize] += now.wrapping_sub(clock.start) * u64::from(clock.weight);
+            clock.start = now;
+        }
         counted::mark(phase as usize);
     }
 
-    /// In seconds of `rate` ticks each.
-    pub fn seconds(&self, rate: f64) -> Phases {
-        Phases { seconds: self.0.map(|ticks| ticks as f64 / rate) }
+    /// The seconds so far at `rate` ticks each; from here on they count anew.
+    pub fn take(&mut self, rate: f64) -> Phases {
+        Phases { seconds: std::mem::take(&mut self.sums).map(|ticks| ticks as f64 / rate) }
     }
 }
 
 /// How fast ticks run, measured since it was made.
 pub(crate) struct Rate {
     instant: Instant,
-    clock: Clock,
+    start: u64,
 }
 
 impl Rate {
     /// Starts to measure.
     pub fn start() -> Self {
-        Self { instant: Instant::now(), clock: Clock::now() }
+        Self { instant: Instant::now(), start: ticks() }
     }
 
     /// Ticks per second.
     pub fn measure(&self) -> f64 {
-        let ticks = Clock::now().0.wrapping_sub(self.clock.0).max(1);
+        let ticks = ticks().wrapping_sub(self.start).max(1);
         ticks as f64 / self.instant.elapsed().as_secs_f64().max(1e-9)
     }
 }

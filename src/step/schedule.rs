@@ -2,7 +2,7 @@
 
 use super::balance::Sums;
 use super::tiles::{self, Event, Plan};
-use super::{Scheme, Scratch, Stage, Survey, Work, begin, finish, volume, with_scratch};
+use super::{Scheme, Scratch, Stage, Survey, Work, begin, finish, flux, volume, with_scratch};
 use crate::lane::F8;
 use crate::state::State;
 use rayon::iter::Either;
@@ -13,7 +13,7 @@ pub(super) struct Tile {
     plan: Plan,
     /// dU/dt: [slot][stage][component][node].
     rates: Vec<F8>,
-    /// Traces: [slot][face][point][`volume::width` numbers].
+    /// See [`flux::Traces`], with [`volume::width`] numbers a point.
     traces: Vec<F8>,
     /// The slot of the traces of each block: [stage][block].
     slots: Vec<u32>,
@@ -36,7 +36,7 @@ impl Tiles {
         let numbers = scheme.block_traces(false);
         let tile = |plan: Plan| Tile {
             rates: vec![F8::ZERO; plan.rates * stages * stride],
-            traces: vec![F8::ZERO; plan.traces * numbers],
+            traces: vec![F8::ZERO; plan.traces * numbers + 2],
             slots: vec![0; stages * blocks.len()],
             plan,
         };
@@ -46,7 +46,7 @@ impl Tiles {
     /// Makes room for the numbers that the balance of energy needs.
     pub fn widen(&mut self, scheme: &Scheme) {
         for tile in &mut self.tiles {
-            tile.traces.resize(tile.plan.traces * scheme.block_traces(true), F8::ZERO);
+            tile.traces.resize(tile.plan.traces * scheme.block_traces(true) + 2, F8::ZERO);
         }
     }
 
@@ -99,7 +99,7 @@ impl Pass<'_> {
             state,
             before,
             rate: &mut now[..stride],
-            traces: &mut tile.traces[slot * numbers..][..numbers],
+            traces: &mut tile.traces[1 + slot * numbers..][..numbers],
             sums: sums_of(&mut self.balance, &tile.plan, &mut self.others, block),
             scratch: self.scratch,
         };
@@ -127,8 +127,7 @@ impl Pass<'_> {
             survey,
             before,
             rate: &mut now[..stride],
-            traces: &tile.traces,
-            slots: &tile.slots[stage.number * blocks..][..blocks],
+            traces: flux::Traces { all: &tile.traces, slots: &tile.slots[stage.number * blocks..][..blocks] },
             next,
             sums: sums_of(&mut self.balance, &tile.plan, &mut self.others, block),
             scratch: self.scratch,

@@ -1,6 +1,5 @@
 //! The health of a state: current wave speeds (for dt and LCF), min J, and where stability was lost.
 
-use super::phase::Clock;
 use super::predictor::transfer::ToPoints;
 use super::{Phase, Scheme, Scratch, Work as Memory, dense, with_scratch};
 use crate::lane::{Coefficient, F8, Lanes, Work};
@@ -145,7 +144,7 @@ impl Work for Block<'_> {
     type Out = Found;
     #[inline(always)]
     fn run<L: Lanes>(self) -> Found {
-        let mut clock = Clock::now();
+        let mut clock = self.scratch.phases.clock();
         let operators = &self.scheme.operators;
         let stride = self.state.components * operators.nodes();
         let u = &self.state.u[stride * self.block..stride * (self.block + 1)];

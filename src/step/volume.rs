@@ -3,7 +3,7 @@
 //! F rows in strong form (D v; `finish` adds the lifted jump of v), exact on uniform states; p rows in weak form. Both
 //! are exact integrals on bilinear cells, so the two forms agree there to rounding.
 
-use crate::lane::{F8, Lanes, Work, load_array, store_array};
+use crate::lane::{F8, Lanes, Twin, Work, load_array, store_array, twins};
 use crate::material::{Law, Material};
 use crate::operators::{Geometry, Line};
 use crate::riemann::tangent;
@@ -327,27 +327,34 @@ impl Work for Speeds<'_> {
 }
 
 impl Speeds<'_> {
+    /// The normal of a point, numbered through all faces of `m` points.
+    #[inline(always)]
+    fn normal_at<L: Lanes>(&self, point: usize, m: usize) -> [L; 2] {
+        let face = point / m;
+        load_array(&self.normal[2 * face..2 * face + 2])
+    }
+
     #[inline(always)]
     fn of_pressure<L: Lanes, M: Material, const W: usize>(&mut self, law: M) {
-        let traces = self.traces.as_chunks_mut::<W>().0;
-        let points = traces.len() / 4;
-        for face in 0..4 {
-            let normal = load_array::<L, 2>(&self.normal[2 * face..2 * face + 2]);
-            for trace in &mut traces[face * points..(face + 1) * points] {
-                law.pressure_speed(load_array::<L, 4>(&trace[..4]), normal).store(&mut trace[8]);
-            }
+        let m = self.traces.len() / W / 4;
+        for pair in 0..2 * m {
+            let (a, b) = (2 * pair, 2 * pair + 1);
+            let normals = twins(self.normal_at::<L>(a, m), self.normal_at::<L>(b, m));
+            let traces = &mut self.traces.as_chunks_mut::<W>().0[a..a + 2];
+            let f = twins(load_array::<L, 4>(&traces[0][..4]), load_array::<L, 4>(&traces[1][..4]));
+            let Twin(one, two) = law.pressure_speed(f, normals);
+            one.store(&mut traces[0][8]);
+            two.store(&mut traces[1][8]);
         }
     }
 
     #[inline(always)]
     fn of_both<L: Lanes, M: Material, const W: usize>(&mut self, law: M) {
-        let traces = self.traces.as_chunks_mut::<W>().0;
-        let points = traces.len() / 4;
-        for face in 0..4 {
-            let normal = load_array::<L, 2>(&self.normal[2 * face..2 * face + 2]);
-            for trace in &mut traces[face * points..(face + 1) * points] {
-                store_array(law.speeds(load_array::<L, 4>(&trace[..4]), normal), &mut trace[8..10]);
-            }
+        let m = self.traces.len() / W / 4;
+        for point in 0..4 * m {
+            let normal = self.normal_at::<L>(point, m);
+            let trace = &mut self.traces.as_chunks_mut::<W>().0[point];
+            store_array(law.speeds(load_array::<L, 4>(&trace[..4]), normal), &mut trace[8..10]);
         }
     }
 }

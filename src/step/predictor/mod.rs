@@ -8,7 +8,7 @@ mod rates;
 pub mod transfer;
 
 use super::{Method, Sweeps};
-use crate::lane::{Coefficient, F8, Kernel, Lanes, load_array, store_array};
+use crate::lane::{self, Coefficient, F8, Kernel, Lanes, load_array, store_array};
 use crate::material::Material;
 use crate::operators::PointMatrices;
 use rates::Rates;
@@ -151,14 +151,20 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
     fn sample<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], turn: impl Turn<L>, q: &mut [F8]) {
         let (base, before) = (base.as_chunks::<6>().0, before.as_chunks::<6>().0);
         let q = &mut q.as_chunks_mut::<6>().0[..base.len()];
-        for (p, q) in q.iter_mut().enumerate() {
-            let f = state::<L, 0, 4>(base, before, row, p);
-            let stress = turn.apply(self.law.stress(f, &mut []));
-            stress[0].store(&mut q[0]);
-            stress[1].store(&mut q[1]);
-            stress[2].store(&mut q[4]);
-            stress[3].store(&mut q[5]);
+        let twins = if M::INTERNAL.is_empty() { base.len() / 2 * 2 } else { 0 };
+        let (pairs, rest) = q.split_at_mut(twins);
+        for (pair, q) in pairs.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+            let p = 2 * pair;
+            let f = lane::twins(state::<L, 0, 4>(base, before, row, p), state::<L, 0, 4>(base, before, row, p + 1));
+            let [one, two] = lane::apart(self.law.stress(f, &mut []));
+            put::<L>(turn.apply(one), &mut q[0]);
+            put::<L>(turn.apply(two), &mut q[1]);
         }
+        for (k, q) in rest.iter_mut().enumerate() {
+            let f = state::<L, 0, 4>(base, before, row, twins + k);
+            put::<L>(turn.apply(self.law.stress(f, &mut [])), q);
+        }
+        let q = &mut q[..base.len()];
         let inverse_density = L::splat(1.0 / self.law.density());
         for (p, q) in q.iter_mut().enumerate() {
             let momentum = state::<L, 4, 2>(base, before, row, p);
@@ -217,6 +223,15 @@ fn state<L: Lanes, const FIRST: usize, const K: usize>(
         }
     }
     u
+}
+
+/// Puts what is differentiated of P where [`Rates`] wants it.
+#[inline(always)]
+fn put<L: Lanes>(stress: [L; 4], q: &mut [F8; 6]) {
+    stress[0].store(&mut q[0]);
+    stress[1].store(&mut q[1]);
+    stress[2].store(&mut q[4]);
+    stress[3].store(&mut q[5]);
 }
 
 /// From P to what is differentiated along xi1 (first two) and xi2.
