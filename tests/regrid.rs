@@ -97,22 +97,24 @@ fn the_smooth_box_keeps_its_order_and_its_totals_from_grid_to_grid() {
     let exact = samples(&smooth_box(6, 14, ""));
     let folder = tempfile::tempdir().unwrap();
     for (degree, n) in [(1, 16), (2, 16), (3, 8)] {
-        let error = |n: usize, regrid: &str| {
-            let outcome = smooth_box(degree, n, regrid);
-            let error = distance(&samples(&outcome), &exact);
-            if !regrid.is_empty() {
-                let what = format!("S{degree} {n} {regrid}");
-                assert!(conserve(&outcome, &what) > 3, "{what}");
-                energy_never_rises(&outcome, &what);
-            }
-            error
+        let error = |n: usize| distance(&samples(&smooth_box(degree, n, "")), &exact);
+        // From grid to grid, `orders` of them; the run that ends on n x n, since the lines show the grid that is there.
+        let changing = |n: usize, orders: [String; 2]| {
+            let outcomes = orders.iter().map(|order| (order, smooth_box(degree, n, order)));
+            let ends_there = |(_, outcome): &(&String, Outcome)| outcome.number("cells") == (n * n) as f64;
+            let (order, outcome) = outcomes.into_iter().find(ends_there).unwrap();
+            let what = format!("S{degree} {n} {order}");
+            assert!(conserve(&outcome, &what) > 3, "{what}");
+            energy_never_rises(&outcome, &what);
+            distance(&samples(&outcome), &exact)
         };
-        let plain = [error(n, ""), error(2 * n, "")];
+        let plain = [error(n), error(2 * n)];
         let order = (plain[0] / plain[1]).log2();
         let (coarse, fine) = ((0.81 * n as f64).round() as usize, n * 5 / 4);
         for (name, other) in [("0.81 n", coarse), ("1.25 n", fine)] {
-            let errors = [error(n, &rectangles(other, n)), error(2 * n, &rectangles(2 * other, 2 * n))];
-            let coarser = if other < n { [error(other, ""), error(2 * other, "")] } else { plain };
+            let orders = |n: usize, other: usize| [rectangles(other, n), rectangles(n, other)];
+            let errors = [changing(n, orders(n, other)), changing(2 * n, orders(2 * n, 2 * other))];
+            let coarser = if other < n { [error(other), error(2 * other)] } else { plain };
             let found = (errors[0] / errors[1]).log2();
             let words = format!(
                 "{} order {found:.2}; without {} order {order:.2}; coarser {}",
@@ -128,14 +130,15 @@ fn the_smooth_box_keeps_its_order_and_its_totals_from_grid_to_grid() {
             let file = unstructured(folder.path(), k * n / 8);
             let back = folder.path().join(format!("square{}.h5", k * n));
             mesh_file::write_mesh(&back, &dgmpm::mesh::rectangle([1.0, 1.0], [k * n, k * n]).unwrap()).unwrap();
-            let there = alternating(&format!("mesh=[\"{}\",\"{}\"]", file.display(), back.display()));
+            let names = [&file, &back].map(|path| format!("\"{}\"", path.display()));
+            let orders = [[0, 1], [1, 0]].map(|[a, b]| alternating(&format!("mesh=[{},{}]", names[a], names[b])));
             let wholly = {
                 let sets = [format!("mesh={{file=\"{}\"}}", file.display())];
                 let fields = BOX.replace("at=", "fields=[\"velocity\",\"piola\"],at=");
                 let degree = format!("scheme.degree={degree}");
                 distance(&samples(&run("smooth_box.toml", &[&sets[0], &fields, &degree])), &exact)
             };
-            (error(k * n, &there), wholly)
+            (changing(k * n, orders), wholly)
         };
         let (errors, wholly): (Vec<f64>, Vec<f64>) = [1, 2].map(with_file).into_iter().unzip();
         let found = (errors[0] / errors[1]).log2();
@@ -203,28 +206,44 @@ fn regrids_on_the_same_grid_and_cloud_change_no_bit() {
     }
 }
 
-/// What a regrid of the spinning square does to its energy falls with the order 2N + 2: it is quadratic in the error.
+/// What one regrid, from n x n to 1.25 n x 1.25 n, does to the energy of the spinning square.
+fn change_of_energy(degree: usize, n: usize, at: f64, sets: &[&str]) -> f64 {
+    let grid =
+        format!("regrid=[{{at=[{at}],points=\"layout\",rectangle={{size=[1,1],cells=[{m},{m}]}}}}]", m = n * 5 / 4);
+    let cells = format!("mesh.rectangle.cells=[{n},{n}]");
+    let degree = format!("scheme.degree={degree}");
+    let end = format!("time.end={}", at + 1e-5);
+    let outcome = run("spinning_square.toml", &[&[&*degree, &cells, &grid, &end, "output=[]"], sets].concat());
+    let table = regrids(&outcome);
+    let energy = |kinetic: &str, strain: &str| table.column(kinetic)[0] + table.column(strain)[0];
+    (energy("kinetic", "strain") / energy("kinetic_before", "strain_before") - 1.0).abs()
+}
+
+/// Quadratic in the error of the projection: the order is 2N + 2 where the state is smooth, here a square that spins and
+/// is turned by angles that differ from place to place.
 #[test]
-fn the_spinning_square_changes_its_energy_by_the_square_of_the_error() {
+fn a_regrid_of_a_smooth_spinning_square_changes_its_energy_by_the_square_of_the_error() {
+    let initial = "initial={velocity=[\"-200*pi*(y-0.5)*(1+0.3*sin(3*x+2*y))\",\"200*pi*(x-0.5)*(1+0.3*cos(2*x-3*y))\"],\
+                   deformation=[\"cos(2*x+y)\",\"-sin(2*x+y)\",\"sin(2*x+y)\",\"cos(2*x+y)\"]}";
     for degree in 1..=3 {
-        let change = |n: usize| {
-            let grid = format!(
-                "regrid=[{{at=[2.5e-4],points=\"layout\",rectangle={{size=[1,1],cells=[{m},{m}]}}}}]",
-                m = n * 5 / 4
-            );
-            let cells = format!("mesh.rectangle.cells=[{n},{n}]");
-            let degree = format!("scheme.degree={degree}");
-            let outcome = run("spinning_square.toml", &[&degree, &cells, &grid, "time.end=3e-4", "output=[]"]);
-            let table = regrids(&outcome);
-            let energy = |kinetic: &str, strain: &str| table.column(kinetic)[0] + table.column(strain)[0];
-            let (before, after) = (energy("kinetic_before", "strain_before"), energy("kinetic", "strain"));
-            (after / before - 1.0).abs()
-        };
-        let (coarse, fine) = (change(8), change(16));
+        let n = if degree == 3 { 4 } else { 8 };
+        // F is no gradient, and is not to be made one: only the projection is looked at.
+        let [coarse, fine] = [n, 2 * n].map(|n| change_of_energy(degree, n, 0.0, &[initial, "curl={control=\"off\"}"]));
+        let order = (coarse / fine).log2();
+        println!("smooth spinning square S{degree}: {coarse:.3e} {fine:.3e} order {order:.2}");
+        assert!(order > 2.0 * degree as f64 + 1.7, "S{degree}: {coarse:e} {fine:e} order {order:.2}");
+    }
+}
+
+/// The scene itself, after 2.5e-4 s: waves with kinks have come in from the free sides, and singular ones from the corners.
+/// Measured 8 -> 16: 1.3e-7 1.2e-8, 5.2e-9 2.5e-10, 1.0e-9 5.2e-11, orders 3.5, 4.4, 4.3 (4, 6, 8 if it were smooth).
+#[test]
+fn a_regrid_of_the_spinning_square_changes_its_energy_by_little_that_falls() {
+    for (degree, measured) in [(1, 3.5), (2, 4.4), (3, 4.3)] {
+        let [coarse, fine] = [8, 16].map(|n| change_of_energy(degree, n, 2.5e-4, &[]));
         let order = (coarse / fine).log2();
         println!("spinning square S{degree}: {coarse:.3e} {fine:.3e} order {order:.2}");
-        // Waves from the free corners are no smooth solution: half an order less is allowed. Below 1e-13 it is rounding.
-        assert!(order > 2.0 * degree as f64 + 1.5 || fine < 1e-13, "S{degree}: {coarse:e} {fine:e} order {order:.2}");
+        assert!(order > measured - 0.5, "S{degree}: {coarse:e} {fine:e} order {order:.2}");
     }
 }
 

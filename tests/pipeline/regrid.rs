@@ -156,7 +156,9 @@ fn refining_coarsening_shifting_and_strips_give_the_meshes_that_they_say() {
 #[test]
 fn criteria_fire_when_they_are_met_and_not_before() {
     let fired = |when: &str| {
-        let bench = bench(&format!("every_steps = 2\nwhen = {{ {when} }}\nrefine = 2\npoints = \"layout\""));
+        let bench = bench(&format!(
+            "every_steps = 2\nwhen = {{ {when} }}\nrectangle = {{ size = [1, 0.5], cells = [5, 3] }}\npoints = \"layout\""
+        ));
         bench.run("run case.toml --set time.end=4e-5 --set output=[]");
         bench.table("runs/case/regrid.csv").1.first().map(|row| row[0])
     };
