@@ -41,7 +41,7 @@ impl<M: Material> Work for Speeds<'_, M> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         for (f, out) in self.1.as_chunks::<4>().0.iter().zip(self.2.as_chunks_mut::<4>().0) {
-            store_array(self.0.largest_squares(load_array::<L, 4>(f)), out);
+            store_array(self.0.largest_squares(load_array::<L, 4>(f), &[]), out);
         }
     }
 }

@@ -12,7 +12,7 @@ use dgmpm::mesh::{links, rectangle};
 use dgmpm::operators::{Needs, Operators, Sampling};
 use dgmpm::riemann::Flux;
 use dgmpm::state::State;
-use dgmpm::step::{Method, Scheme, Survey, Sweeps, Tableau, Work};
+use dgmpm::step::{Histories, Method, Scheme, Survey, Sweeps, Tableau, Work};
 
 const CELLS: usize = 4;
 
@@ -69,6 +69,7 @@ fn scheme(method: Method, degree: usize) -> Result<Scheme, Box<dyn std::error::E
     Ok(Scheme {
         operators,
         laws: vec![Law::NeoHookean(NeoHookean::new(1.0, 0.3, 1.0))],
+        histories: Histories::default(),
         method,
         flux: Flux::Rusanov,
         boundaries: (0..4).map(|_| Box::new(Wall { speed: None }) as Box<dyn Boundary>).collect(),

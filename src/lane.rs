@@ -12,6 +12,7 @@
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 pub mod counted;
+pub mod functions;
 mod portable;
 mod twin;
 
@@ -67,6 +68,19 @@ pub trait Lane:
     fn max(self, other: Self) -> Self;
     /// First guess of x^(-1/3) for normal x > 0 by arithmetic on the bits, relative error below 6 %.
     fn inverse_cube_root_guess(self) -> Self;
+    /// (m, k) with self = 2^k m, m in [sqrt(1/2), sqrt(2)), for normal numbers above 0; by arithmetic on the bits.
+    fn split(self) -> (Self, Self);
+    /// 2^k of a whole number k, -1022..=1023.
+    fn power_of_two(self) -> Self;
+    /// The nearest whole number, |self| < 2^51.
+    #[inline(always)]
+    fn nearest(self) -> Self {
+        // A number below 2^51 that is added to 1.5 2^52 is rounded to a whole one.
+        const ROUND: f64 = 6_755_399_441_055_744.0;
+        (self + Self::splat(ROUND)) - Self::splat(ROUND)
+    }
+    /// `yes` in the lanes where self > 0, else (also where it is NaN) `no`.
+    fn where_positive(self, yes: Self, no: Self) -> Self;
 
     /// Zero in every lane.
     #[inline(always)]
@@ -218,6 +232,15 @@ impl Coefficient for F8 {
 /// is enough for a guess, and is one 32-bit product in a vector register.
 const CUBE_ROOT_MAGIC: u64 = 0x553e_f0ff_289d_d796;
 
+/// Bits of sqrt(1/2), rounded down: where the mantissa of [`Lane::split`] begins. Bits minus these, plus 1024 in the
+/// exponent so that they stay positive, have k + 1024 above the fraction.
+const HALF_ROOT: u64 = 0x3fe6_a09e_667f_3bcc;
+const SPLIT_OFFSET: u64 = (1024 << 52) - HALF_ROOT;
+/// 2^52 and its bits: a whole number k in the fraction is 2^52 + k.
+const TWO_52: f64 = 4_503_599_627_370_496.0;
+/// Added to k, it leaves k + 1023 in the lowest bits: 1.5 2^52 + 1023.
+const POWER_MAGIC: f64 = 6_755_399_441_055_744.0 + 1023.0;
+
 impl Lane for f64 {
     #[inline(always)]
     fn splat(x: f64) -> f64 {
@@ -244,6 +267,20 @@ impl Lane for f64 {
     fn inverse_cube_root_guess(self) -> f64 {
         f64::from_bits(CUBE_ROOT_MAGIC.wrapping_sub(((self.to_bits() >> 32) / 3) << 32))
     }
+    #[inline(always)]
+    fn split(self) -> (f64, f64) {
+        let power = self.to_bits().wrapping_add(SPLIT_OFFSET) >> 52;
+        let mantissa = self.to_bits().wrapping_sub(power.wrapping_sub(1024) << 52);
+        (f64::from_bits(mantissa), f64::from_bits(power | TWO_52.to_bits()) - (TWO_52 + 1024.0))
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> f64 {
+        f64::from_bits((self + POWER_MAGIC).to_bits() << 52)
+    }
+    #[inline(always)]
+    fn where_positive(self, yes: f64, no: f64) -> f64 {
+        if self > 0.0 { yes } else { no }
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -253,7 +290,9 @@ pub use x86::Avx2;
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    use super::{CUBE_ROOT_MAGIC, F8, LANES, Lane, Lanes, Work, as_f64, assert_within};
+    use super::{
+        CUBE_ROOT_MAGIC, F8, LANES, Lane, Lanes, POWER_MAGIC, SPLIT_OFFSET, TWO_52, Work, as_f64, assert_within,
+    };
     use std::arch::x86_64::*;
     use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -322,6 +361,49 @@ mod x86 {
             // SAFETY: see Avx2.
             unsafe { Avx2(guess(self.0), guess(self.1)) }
         }
+        #[inline(always)]
+        fn split(self) -> (Avx2, Avx2) {
+            // SAFETY: see Avx2.
+            let ((m0, k0), (m1, k1)) = unsafe { (split(self.0), split(self.1)) };
+            (Avx2(m0, m1), Avx2(k0, k1))
+        }
+        #[inline(always)]
+        fn power_of_two(self) -> Avx2 {
+            let sum = self + Avx2::splat(POWER_MAGIC);
+            // SAFETY: see Avx2.
+            unsafe { Avx2(shifted(sum.0), shifted(sum.1)) }
+        }
+        #[inline(always)]
+        fn where_positive(self, yes: Avx2, no: Avx2) -> Avx2 {
+            // SAFETY: see Avx2.
+            unsafe {
+                let zero = _mm256_setzero_pd();
+                let (low, high) =
+                    (_mm256_cmp_pd::<_CMP_GT_OQ>(self.0, zero), _mm256_cmp_pd::<_CMP_GT_OQ>(self.1, zero));
+                Avx2(_mm256_blendv_pd(no.0, yes.0, low), _mm256_blendv_pd(no.1, yes.1, high))
+            }
+        }
+    }
+
+    /// [`Lane::split`] of four lanes, operation by operation as for `f64`.
+    #[inline(always)]
+    unsafe fn split(x: __m256d) -> (__m256d, __m256d) {
+        // SAFETY: see Avx2.
+        unsafe {
+            let bits = _mm256_castpd_si256(x);
+            let power = _mm256_srli_epi64::<52>(_mm256_add_epi64(bits, _mm256_set1_epi64x(SPLIT_OFFSET as i64)));
+            let shift = _mm256_slli_epi64::<52>(_mm256_sub_epi64(power, _mm256_set1_epi64x(1024)));
+            let number = _mm256_or_si256(power, _mm256_set1_epi64x(TWO_52.to_bits() as i64));
+            let k = _mm256_sub_pd(_mm256_castsi256_pd(number), _mm256_set1_pd(TWO_52 + 1024.0));
+            (_mm256_castsi256_pd(_mm256_sub_epi64(bits, shift)), k)
+        }
+    }
+
+    /// The lowest bits in the place of the exponent.
+    #[inline(always)]
+    unsafe fn shifted(x: __m256d) -> __m256d {
+        // SAFETY: see Avx2.
+        unsafe { _mm256_castsi256_pd(_mm256_slli_epi64::<52>(_mm256_castpd_si256(x))) }
     }
 
     /// The guess of x^(-1/3) for four lanes: n / 3 of 32 bits is (n * 0xaaaaaaab) >> 33, exactly.
@@ -365,11 +447,11 @@ mod x86 {
             unsafe {
                 let masks = [_mm256_loadu_pd(SECOND.as_ptr().add(r)), _mm256_loadu_pd(SECOND.as_ptr().add(r + 4))];
                 let (one, two) = (numbers.add(LANES * first + r), numbers.add(LANES * (second - 1) + r));
-                for k in 0..K {
+                for (k, out) in out.iter_mut().enumerate() {
                     let (one, two) = (one.add(LANES * k), two.add(LANES * k));
                     let low = _mm256_blendv_pd(_mm256_loadu_pd(one), _mm256_loadu_pd(two), masks[0]);
                     let high = _mm256_blendv_pd(_mm256_loadu_pd(one.add(4)), _mm256_loadu_pd(two.add(4)), masks[1]);
-                    out[k] = Avx2(low, high);
+                    *out = Avx2(low, high);
                 }
             }
             out

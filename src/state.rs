@@ -20,13 +20,16 @@ pub struct State {
     pub components: usize,
     /// The numbers.
     pub u: Vec<F8>,
+    /// Internal variables of blocks whose law has some, `[block][point][variable]` at the points where the law is evaluated
+    /// between steps ([`crate::step::Histories`]); empty where no law has any.
+    pub internal: Vec<F8>,
 }
 
 impl State {
     /// From numbers per cell, `[cell][component][node]`; padding lanes rest at F = 1, p = 0.
     pub fn pack(blocks: &Blocks, nodes: usize, components: usize, cells: &[f64]) -> Self {
         let rest = |k: usize| if k / nodes == 0 || k / nodes == 3 { 1.0 } else { 0.0 };
-        Self { time: 0.0, step: 0, components, u: blocks.pack(cells, components * nodes, rest) }
+        Self { time: 0.0, step: 0, components, u: blocks.pack(cells, components * nodes, rest), internal: vec![] }
     }
 
     /// Numbers per cell, `[cell][component][node]`.

@@ -4,6 +4,7 @@ use super::pipeline::Body;
 use super::preprocess::certificates;
 use super::print::say;
 use crate::basis::Lagrange;
+use crate::cloud::Cloud;
 use crate::error::{Error, Result};
 use crate::io::grid::Field as Values;
 use crate::io::snapshot::{GridFiles, Snapshot};
@@ -53,6 +54,8 @@ struct Export {
 struct Sheet {
     files: GridFiles,
     body: Body,
+    /// Where internal variables stand.
+    places: Cloud,
     cell_fields: Vec<Values>,
 }
 
@@ -95,7 +98,14 @@ impl Export {
         let body = Body { mesh, cloud, material };
         let certificates = certificates(&self.scene, &body)?;
         let cell_fields = export::cell_fields(&body.mesh, &certificates, &body.material);
-        Ok(Sheet { files: files.clone(), body, cell_fields })
+        let places = self.scene.places(&body.cloud);
+        Ok(Sheet { files: files.clone(), body, places, cell_fields })
+    }
+
+    /// The number of internal variables of all points of a grid.
+    fn internal(&self, sheet: &Sheet) -> usize {
+        let of = |(cell, &law): (usize, &usize)| self.laws[law].internal().len() * sheet.places.of(cell).len();
+        sheet.body.material.iter().enumerate().map(of).sum()
     }
 
     /// Reads the snapshots, each with its own grid, and hands their solutions to `use_it`, with whether the grid is new.
@@ -111,11 +121,13 @@ impl Export {
                 Some(sheet) if sheet.files == snapshot.grid => (sheet, false),
                 _ => (self.sheet(&snapshot.grid)?, true),
             };
-            if snapshot.cells() != sheet.body.mesh.cells.len() || snapshot.degree + 1 != self.basis.len() {
+            let fits = snapshot.cells() == sheet.body.mesh.cells.len() && snapshot.degree + 1 == self.basis.len();
+            if !fits || snapshot.internal.len() != self.internal(&sheet) {
                 let what = format!("{} does not belong to the scene and mesh of this run", path.display());
                 return Err(Error::input(what, "run the scene again with --force"));
             }
-            let solution = Solution::of_snapshot(&snapshot, &self.basis, &self.laws, &sheet.body.material);
+            let solution =
+                Solution::of_snapshot(&snapshot, &self.basis, &self.laws, &sheet.body.material, &sheet.places);
             use_it(*step, &sheet, &solution, snapshot.time, is_new)?;
             last = Some(sheet);
         }

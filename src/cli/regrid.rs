@@ -3,7 +3,7 @@
 use super::keep;
 use super::pipeline::{self, Body};
 use super::print::say;
-use super::rebuild::{place_points, scale};
+use super::rebuild::{internal, place_points, scale};
 use crate::error::{Error, Result};
 use crate::io::snapshot::{self, GridFiles, Snapshot};
 use crate::io::{cloud_file, mesh_file, pending};
@@ -130,7 +130,9 @@ fn state_of(snapshot: &Snapshot, scheme: &Scheme) -> Result<State> {
     }
     let components = if snapshot.displacement.is_empty() { UNKNOWNS } else { UNKNOWNS + 2 };
     let state = State::pack(blocks, scheme.operators.nodes(), components, &snapshot.unknowns(components));
-    Ok(State { time: snapshot.time, step: snapshot.step, ..state })
+    let mut state = State { time: snapshot.time, step: snapshot.step, ..state };
+    scheme.set_internal(&mut state, &snapshot.internal);
+    Ok(state)
 }
 
 /// Body, scheme and state on the new mesh.
@@ -149,11 +151,14 @@ fn moved(
     let field = Field { basis: &scheme.operators.line.basis, components, u: &unknowns, scale: &scale };
     let mut moved = regrid::transfer(&from, &to, &field)?;
     let placed = place_points(scene, &from, &old.cloud, &to, &moved, policy, scheme)?;
-    let body = Body { mesh, cloud: placed.cloud, material };
+    let body = Body { mesh, cloud: placed.cloud.clone(), material };
     let after = build_scheme(scene, &body)?;
     regrid::curl_free(&after.operators, components, &moved.same, &mut moved.u);
     let new = State::pack(&after.operators.blocks, n, components, &moved.u);
-    Ok((body, after, State { time: state.time, step: state.step, ..new }))
+    let mut new = State { time: state.time, step: state.step, ..new };
+    let to = Grid { mesh: &body.mesh, material: &body.material };
+    after.set_internal(&mut new, &internal((from, scheme), state, (to, &after), &moved.same, &placed)?);
+    Ok((body, after, new))
 }
 
 /// Totals before and after.

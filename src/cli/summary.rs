@@ -95,6 +95,9 @@ fn rows(report: &Report) -> Vec<(String, String)> {
         rows.push(row("kinetic energy", format!("{:.6e} -> {:.6e} J/m", first.kinetic, last.kinetic)));
         rows.push(row("strain energy", format!("{:.6e} -> {:.6e} J/m", first.strain, last.strain)));
         rows.push(row("total energy", format!("{:.6} of the start", report.energy_ratio())));
+        if let Some((first, last)) = first.plastic.zip(last.plastic) {
+            rows.push(row("plastic dissipation", format!("{first:.6e} -> {last:.6e} J/m")));
+        }
         for (k, axis) in ["1", "2"].iter().enumerate() {
             let change = format!("{:.6e} -> {:.6e} kg/s", first.momentum[k], last.momentum[k]);
             rows.push(row(format!("momentum {axis}"), change));
@@ -103,7 +106,7 @@ fn rows(report: &Report) -> Vec<(String, String)> {
             rows.push(row("angular momentum", format!("{first:.6e} -> {last:.6e} kg m/s")));
         }
         if let Some(balance) = &report.balance {
-            rows.extend(balance_rows(balance, last.energy()));
+            rows.extend(balance_rows(balance, last.accounted()));
         }
         rows.push(row("min J, max |curl F|", format!("{:.6}, {:.3e} 1/m", report.min_j, last.max_curl)));
     }

@@ -86,6 +86,19 @@ impl Lane for Dual {
     fn inverse_cube_root_guess(self) -> Dual {
         self.inverse_cube_root()
     }
+    fn split(self) -> (Dual, Dual) {
+        let (mantissa, power) = self.value.split();
+        (self.chain(mantissa, (-power).power_of_two()), Dual::splat(power))
+    }
+    fn nearest(self) -> Dual {
+        Dual::splat(self.value.nearest())
+    }
+    fn power_of_two(self) -> Dual {
+        Dual::splat(self.value.power_of_two())
+    }
+    fn where_positive(self, yes: Dual, no: Dual) -> Dual {
+        if self.value > 0.0 { yes } else { no }
+    }
     fn inverse_cube_root(self) -> Dual {
         let root = 1.0 / self.value.cbrt();
         self.chain(root, -root / (3.0 * self.value))
@@ -95,13 +108,18 @@ impl Lane for Dual {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lane::functions::{atanh_ratio, exp, ln};
 
     #[test]
     fn every_operation_has_the_slope_of_differences() {
         let all = |x: Dual| {
             let c = Dual::splat(1.7);
             let (sine, cosine) = x.sin_cos();
-            [x + c * x, c - x, x * x * x, c / x, -x, x.sqrt(), x.inverse_cube_root(), sine, cosine, x.mul_add(x, c)]
+            let simple = [x + c * x, c - x, x * x * x, c / x, -x, x.mul_add(x, c)];
+            let roots = [x.sqrt(), x.inverse_cube_root(), sine, cosine];
+            let functions =
+                [ln(x), ln(c * c * x), exp(x), exp(-x), atanh_ratio(x / c), atanh_ratio(x - Dual::splat(0.82))];
+            [&simple[..], &roots, &functions].concat()
         };
         let (x, h) = (0.83, 1e-5);
         let (plus, minus) = (all(Dual::splat(x + h)), all(Dual::splat(x - h)));

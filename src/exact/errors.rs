@@ -1,7 +1,7 @@
 //! The error of a state against an exact solution, by grid quadrature with N + 3 points per direction.
 
 use super::Exact;
-use crate::material::Law;
+use crate::material::{Internal, Law};
 use crate::mesh::{Mesh, map};
 use crate::observe::Solution;
 use crate::quadrature::gauss_legendre;
@@ -68,13 +68,14 @@ pub fn errors(exact: &dyn Exact, mesh: &Mesh, scheme: &Scheme, state: &State, ma
     let order = solution.basis.len() + 2;
     compare(mesh, order, &|cell| solution.law(cell), &|cell, xi, x| {
         let found = solution.at(cell, xi);
-        let expected = (exact.deformation(x, state.time), exact.velocity(x, state.time));
-        [(found.deformation, found.velocity), expected]
+        let internal = exact.internal(x, state.time).unwrap_or_else(|| solution.law(cell).virgin());
+        let expected = (exact.deformation(x, state.time), exact.velocity(x, state.time), internal);
+        [(found.deformation, found.velocity, found.internal), expected]
     })
 }
 
-/// F and v, m/s, at a point.
-pub type Values = ([f64; 4], [f64; 2]);
+/// F, v (m/s) and internal variables at a point.
+pub type Values = ([f64; 4], [f64; 2], Internal<f64>);
 
 /// Errors between two solutions by quadrature with `order` points per direction in the cells of a mesh: `at(cell, xi, X)`
 /// gives what was found and what is expected there, `law` the law of a cell.
@@ -93,8 +94,8 @@ pub fn compare<'a>(
         let slowness = 1.0 / law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0];
         for (&xi, weight) in xi.iter().zip(&weights) {
             let weight = weight * map::determinant(&map::jacobian(&corners, xi)).abs();
-            let [(found_f, found_v), (f, v)] = at(cell, xi, map::position(&corners, xi));
-            let (found_p, p) = (law.stress(found_f), law.stress(f));
+            let [(found_f, found_v, found_internal), (f, v, internal)] = at(cell, xi, map::position(&corners, xi));
+            let (found_p, p) = (law.response(found_f, &found_internal).piola, law.response(f, &internal).piola);
             let error_f: [f64; 4] = std::array::from_fn(|k| found_f[k] - f[k]);
             let error_v = [found_v[0] - v[0], found_v[1] - v[1]];
             let error_p: [f64; 4] = std::array::from_fn(|k| found_p[k] - p[k]);

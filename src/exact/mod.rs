@@ -6,6 +6,7 @@ mod dual;
 mod errors;
 mod linear_bar;
 mod manufactured;
+mod plastic_impact;
 mod riemann;
 mod simple_wave;
 mod vortex;
@@ -15,12 +16,13 @@ pub use dual::Dual;
 pub use errors::{Errors, Norms, Values, compare, errors};
 pub use linear_bar::LinearBar;
 pub use manufactured::Manufactured;
+pub use plastic_impact::PlasticImpact;
 pub use riemann::Riemann;
 pub use simple_wave::SimpleWave;
 pub use vortex::Vortex;
 pub use wall_impact::WallImpact;
 
-use crate::material::{Law, Material};
+use crate::material::{Internal, Law, Material, virgin};
 use crate::source::Source;
 use crate::with_law;
 use std::sync::Arc;
@@ -32,6 +34,11 @@ pub trait Exact: Send + Sync {
 
     /// v, m/s.
     fn velocity(&self, x: [f64; 2], t: f64) -> [f64; 2];
+
+    /// Internal variables, of a solution for a law with memory.
+    fn internal(&self, _x: [f64; 2], _t: f64) -> Option<Internal<f64>> {
+        None
+    }
 
     /// b, m/s^2, of a solution that needs a body force: b = dv/dt - Div P / rho0.
     fn body_force(&self, _x: [f64; 2], _t: f64) -> Option<[f64; 2]> {
@@ -60,7 +67,7 @@ impl Source for ExactForce {
 
 /// Div P / rho0, m/s^2, where `slopes[a]` is F and its derivative along X_a: through the code of the law itself.
 fn acceleration_of_stress(law: &Law, slopes: [[Dual; 4]; 2]) -> [f64; 2] {
-    let [along1, along2] = slopes.map(|f| with_law!(law, law => law.stress(f, &mut [])));
+    let [along1, along2] = slopes.map(|f| with_law!(law, law => law.stress(f, &mut virgin::<Dual, _>(law))));
     [0, 1].map(|i| (along1[2 * i].slope + along2[2 * i + 1].slope) / law.density())
 }
 

@@ -2,7 +2,9 @@
 //!
 //! Arrays, with M = degree + 1: `time` in s and `step`; `u` (cells, 6, M, M), the grid unknowns F11, F12, F21, F22, p1,
 //! p2 at the Gauss nodes (node i along xi1, j along xi2); `displacement` (cells, 2, M, M) or empty; `internal` (n), the
-//! internal variables point by point. Attributes `mesh`, `cloud`: the files of the run folder that the state lives on.
+//! internal variables point by point: cells in the order of the mesh, points in that of the cloud (nodes a = i M + j for
+//! ADER-DGFEM and RK-DGFEM), variables in that of the cell's law, which may have none. Attributes `mesh`,
+//! `cloud`: the files of the run folder that the state lives on.
 
 use std::path::{Path, PathBuf};
 
@@ -25,7 +27,7 @@ pub struct Snapshot {
     pub u: Vec<f64>,
     /// Displacement `[cell][component 0..2][node]`, in m; empty if it is not integrated.
     pub displacement: Vec<f64>,
-    /// Internal variables `[point][k]`; empty for elastic laws.
+    /// Internal variables `[cell][point][variable]`, none for cells of elastic laws.
     pub internal: Vec<f64>,
     /// The files of its grid.
     pub grid: GridFiles,

@@ -1,6 +1,6 @@
 //! Eight lanes in one register of AVX-512.
 
-use super::{CUBE_ROOT_MAGIC, F8, LANES, Lane, Lanes, Work, as_f64, assert_within};
+use super::{CUBE_ROOT_MAGIC, F8, LANES, Lane, Lanes, POWER_MAGIC, SPLIT_OFFSET, TWO_52, Work, as_f64, assert_within};
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -75,6 +75,33 @@ impl Lane for Avx512 {
             Avx512(_mm512_castsi512_pd(_mm512_sub_epi64(magic, _mm512_slli_epi64::<32>(third))))
         }
     }
+    /// Operation by operation as for `f64`.
+    #[inline(always)]
+    fn split(self) -> (Avx512, Avx512) {
+        // SAFETY: see Avx512.
+        unsafe {
+            let bits = _mm512_castpd_si512(self.0);
+            let power = _mm512_srli_epi64::<52>(_mm512_add_epi64(bits, _mm512_set1_epi64(SPLIT_OFFSET as i64)));
+            let shift = _mm512_slli_epi64::<52>(_mm512_sub_epi64(power, _mm512_set1_epi64(1024)));
+            let number = _mm512_or_si512(power, _mm512_set1_epi64(TWO_52.to_bits() as i64));
+            let k = _mm512_sub_pd(_mm512_castsi512_pd(number), _mm512_set1_pd(TWO_52 + 1024.0));
+            (Avx512(_mm512_castsi512_pd(_mm512_sub_epi64(bits, shift))), Avx512(k))
+        }
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> Avx512 {
+        let sum = self + Avx512::splat(POWER_MAGIC);
+        // SAFETY: see Avx512.
+        unsafe { Avx512(_mm512_castsi512_pd(_mm512_slli_epi64::<52>(_mm512_castpd_si512(sum.0)))) }
+    }
+    #[inline(always)]
+    fn where_positive(self, yes: Avx512, no: Avx512) -> Avx512 {
+        // SAFETY: see Avx512.
+        unsafe {
+            let positive = _mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, _mm512_setzero_pd());
+            Avx512(_mm512_mask_blend_pd(positive, no.0, yes.0))
+        }
+    }
 }
 
 impl Lanes for Avx512 {
@@ -103,9 +130,9 @@ impl Lanes for Avx512 {
         // lie within `all`, since there is one number at least before and behind both runs.
         unsafe {
             let (one, two) = (numbers.add(LANES * first + r), numbers.add(LANES * (second - 1) + r));
-            for k in 0..K {
+            for (k, out) in out.iter_mut().enumerate() {
                 let (one, two) = (_mm512_loadu_pd(one.add(LANES * k)), _mm512_loadu_pd(two.add(LANES * k)));
-                out[k] = Avx512(_mm512_mask_blend_pd(from_second, one, two));
+                *out = Avx512(_mm512_mask_blend_pd(from_second, one, two));
             }
         }
         out

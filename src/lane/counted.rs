@@ -149,6 +149,19 @@ impl Lane for Counted {
     fn inverse_cube_root_guess(self) -> Counted {
         Counted(self.0.inverse_cube_root_guess())
     }
+    #[inline(never)]
+    fn split(self) -> (Counted, Counted) {
+        let (mantissa, power) = self.0.split();
+        (Counted(mantissa), Counted(power))
+    }
+    #[inline(never)]
+    fn power_of_two(self) -> Counted {
+        Counted(self.0.power_of_two())
+    }
+    #[inline(never)]
+    fn where_positive(self, yes: Counted, no: Counted) -> Counted {
+        Counted(self.0.where_positive(yes.0, no.0))
+    }
 }
 
 impl Lanes for Counted {

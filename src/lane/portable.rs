@@ -69,6 +69,20 @@ impl Lane for Portable {
     fn inverse_cube_root_guess(self) -> Portable {
         by_pair!(|i: usize| self.0[i].each(Lane::inverse_cube_root_guess))
     }
+    #[inline(always)]
+    fn split(self) -> (Portable, Portable) {
+        let of = |i: usize| self.0[i].split();
+        let [a, b, c, d] = [of(0), of(1), of(2), of(3)];
+        (Portable([a.0, b.0, c.0, d.0]), Portable([a.1, b.1, c.1, d.1]))
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> Portable {
+        by_pair!(|i: usize| self.0[i].each(Lane::power_of_two))
+    }
+    #[inline(always)]
+    fn where_positive(self, yes: Portable, no: Portable) -> Portable {
+        by_pair!(|i: usize| self.0[i].where_positive(yes.0[i], no.0[i]))
+    }
 }
 
 impl Lanes for Portable {
@@ -85,6 +99,21 @@ impl Lanes for Portable {
     #[inline(always)]
     fn from_lanes(numbers: [f64; LANES]) -> Portable {
         Self::load(&F8(numbers))
+    }
+}
+
+impl Pair {
+    /// See [`Lane::split`].
+    #[inline(always)]
+    fn split(self) -> (Pair, Pair) {
+        let [a, b] = self.numbers().map(Lane::split);
+        (Pair::new([a.0, b.0]), Pair::new([a.1, b.1]))
+    }
+    /// See [`Lane::where_positive`].
+    #[inline(always)]
+    fn where_positive(self, yes: Pair, no: Pair) -> Pair {
+        let (x, yes, no) = (self.numbers(), yes.numbers(), no.numbers());
+        Pair::new([x[0].where_positive(yes[0], no[0]), x[1].where_positive(yes[1], no[1])])
     }
 }
 

@@ -79,4 +79,17 @@ impl<L: Lane> Lane for Twin<L> {
     fn inverse_cube_root_guess(self) -> Self {
         Twin(self.0.inverse_cube_root_guess(), self.1.inverse_cube_root_guess())
     }
+    #[inline(always)]
+    fn split(self) -> (Self, Self) {
+        let ((m0, k0), (m1, k1)) = (self.0.split(), self.1.split());
+        (Twin(m0, m1), Twin(k0, k1))
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        Twin(self.0.power_of_two(), self.1.power_of_two())
+    }
+    #[inline(always)]
+    fn where_positive(self, yes: Self, no: Self) -> Self {
+        Twin(self.0.where_positive(yes.0, no.0), self.1.where_positive(yes.1, no.1))
+    }
 }

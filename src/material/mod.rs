@@ -2,16 +2,27 @@
 //!
 //! A new law is one file with a type that implements [`Material`] and one line in [`Law`].
 
+mod j2;
 mod linear;
 mod neo_hookean;
 
+pub use j2::J2;
 pub use linear::LinearElastic;
 pub use neo_hookean::NeoHookean;
 
 use crate::lane::Lane;
 use crate::tensor;
 
+/// The most internal variables that a law of the registry has.
+pub const MOST_INTERNAL: usize = 5;
+
+/// Internal variables of a point; a law has the first of them, none or up to [`MOST_INTERNAL`].
+pub type Internal<L> = [L; MOST_INTERNAL];
+
 /// A hyperelastic (or, with internal variables, inelastic) law in plane strain.
+///
+/// A law with internal variables is integrated from their values at t_n to F. Those at F, which [`Material::stress`] gives,
+/// do as well for what else is asked at F.
 ///
 /// Written once for all lanes. J <= 0 gives garbage, not an error: the step tests min J.
 ///
@@ -19,6 +30,9 @@ use crate::tensor;
 pub trait Material: Copy {
     /// Names of the internal variables of a point; an elastic law has none, stores none, writes none.
     const INTERNAL: &'static [&'static str];
+
+    /// Their values in virgin material.
+    const VIRGIN: &'static [f64] = &[];
 
     /// rho0, in kg/m^3.
     fn density(&self) -> f64;
@@ -32,7 +46,15 @@ pub trait Material: Copy {
     /// Stored energy W, in J/m^3.
     fn energy<L: Lane>(&self, f: [L; 4], internal: &[L]) -> L;
 
-    /// Acoustic tensor B_ij = N_a (dP_ia/dF_jb) N_b, [B11, B12, B22] in Pa, elastic.
+    /// Energy that was dissipated since the material was virgin, in J/m^3. P is the derivative of stored and dissipated
+    /// energy together, at fixed internal variables of t_n.
+    #[inline(always)]
+    fn dissipated<L: Lane>(&self, _: [L; 4], _: &[L]) -> L {
+        L::zero()
+    }
+
+    /// Acoustic tensor B_ij = N_a (dP_ia/dF_jb) N_b, [B11, B12, B22] in Pa, elastic. Faces have no internal variables: a law
+    /// with memory takes those of virgin material that went to F in one step.
     fn acoustic<L: Lane>(&self, f: [L; 4], n: [L; 2]) -> [L; 3];
 
     /// Eigenvalues (larger, smaller) of B(N), rho0 c_p^2 and rho0 c_s^2, in Pa.
@@ -57,9 +79,9 @@ pub trait Material: Copy {
     }
 
     /// (c_p^2, c_s^2) in m^2/s^2 along the smallest principal stretch, where c_p is the largest of all directions
-    /// (isotropic laws); negative where hyperbolicity is lost.
+    /// (isotropic laws); negative where hyperbolicity is lost. With internal variables elastic, and at least as large.
     #[inline(always)]
-    fn largest_squares<L: Lane>(&self, f: [L; 4]) -> [L; 2] {
+    fn largest_squares<L: Lane>(&self, f: [L; 4], _: &[L]) -> [L; 2] {
         let [c11, c12, c22] = tensor::right_cauchy_green(f);
         let [b11, b12, b22] = self.acoustic(f, tensor::smaller_eigenvector(c11, c12, c22));
         let inverse = L::splat(1.0 / self.density());
@@ -83,6 +105,8 @@ pub enum Law {
     NeoHookean(NeoHookean),
     /// Linear elastic, small strain.
     Linear(LinearElastic),
+    /// J2 plasticity with linear isotropic hardening.
+    J2(J2),
 }
 
 /// Runs `$body` with `$law` bound to the concrete law: one `match` a block, never per point.
@@ -92,6 +116,7 @@ macro_rules! with_law {
         match $choice {
             $crate::material::Law::NeoHookean($law) => $body,
             $crate::material::Law::Linear($law) => $body,
+            $crate::material::Law::J2($law) => $body,
         }
     };
 }
@@ -102,19 +127,24 @@ impl Law {
         with_law!(self, law => law.density())
     }
 
-    /// Stress at one point, see [`Material::stress`].
+    /// What the law says at one point, integrated from `internal` to F.
+    pub fn response(&self, f: [f64; 4], internal: &Internal<f64>) -> Response {
+        with_law!(self, law => respond(law, f, internal))
+    }
+
+    /// Stress at one point of virgin material, see [`Material::stress`].
     pub fn stress(&self, f: [f64; 4]) -> [f64; 4] {
-        with_law!(self, law => law.stress(f, &mut []))
+        self.response(f, &self.virgin()).piola
     }
 
-    /// Out-of-plane stress at one point, see [`Material::stress33`].
+    /// Out-of-plane stress at one point of virgin material, see [`Material::stress33`].
     pub fn stress33(&self, f: [f64; 4]) -> f64 {
-        with_law!(self, law => law.stress33(f, &[]))
+        self.response(f, &self.virgin()).piola33
     }
 
-    /// Stored energy at one point, see [`Material::energy`].
+    /// Stored energy at one point of virgin material, see [`Material::energy`].
     pub fn energy(&self, f: [f64; 4]) -> f64 {
-        with_law!(self, law => law.energy(f, &[]))
+        self.response(f, &self.virgin()).energy
     }
 
     /// Speeds at one point, see [`Material::speeds`].
@@ -128,8 +158,8 @@ impl Law {
     }
 
     /// (c_p, c_s) along the smallest principal stretch, see [`Material::largest_squares`]; NaN where hyperbolicity is lost.
-    pub fn largest_speeds(&self, f: [f64; 4]) -> [f64; 2] {
-        with_law!(self, law => law.largest_squares(f)).map(f64::sqrt)
+    pub fn largest_speeds(&self, f: [f64; 4], internal: &Internal<f64>) -> [f64; 2] {
+        with_law!(self, law => law.largest_squares(f, internal)).map(f64::sqrt)
     }
 
     /// Names of the internal variables.
@@ -139,6 +169,43 @@ impl Law {
         }
         with_law!(self, law => names(law))
     }
+
+    /// Internal variables of virgin material.
+    pub fn virgin(&self) -> Internal<f64> {
+        with_law!(self, law => virgin(law))
+    }
+}
+
+/// Internal variables of virgin material.
+#[inline(always)]
+pub fn virgin<L: Lane, M: Material>(_: &M) -> Internal<L> {
+    let mut out = [L::zero(); MOST_INTERNAL];
+    for (out, value) in out.iter_mut().zip(M::VIRGIN) {
+        *out = L::splat(*value);
+    }
+    out
+}
+
+/// What a law says at one point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Response {
+    /// P, [P11, P12, P21, P22] in Pa.
+    pub piola: [f64; 4],
+    /// P33, Pa.
+    pub piola33: f64,
+    /// Stored energy, J/m^3.
+    pub energy: f64,
+    /// Dissipated energy, J/m^3.
+    pub dissipated: f64,
+    /// Internal variables at F.
+    pub internal: Internal<f64>,
+}
+
+fn respond<M: Material>(law: &M, f: [f64; 4], from: &Internal<f64>) -> Response {
+    let (mut internal, known) = (*from, &from[..M::INTERNAL.len()]);
+    let piola = law.stress(f, &mut internal[..M::INTERNAL.len()]);
+    let (piola33, energy, dissipated) = (law.stress33(f, known), law.energy(f, known), law.dissipated(f, known));
+    Response { piola, piola33, energy, dissipated, internal }
 }
 
 #[cfg(test)]
@@ -152,6 +219,9 @@ mod suite {
             Law::NeoHookean(NeoHookean::new(2e11, 0.3, 7800.0)),
             Law::NeoHookean(NeoHookean::new(1.0, 0.45, 1.0)),
             Law::Linear(LinearElastic::new(2e11, 0.3, 7800.0)),
+            // Elastic everywhere; tests of its own in `j2`.
+            Law::J2(J2::new(2e11, 0.3, 7800.0, 1e30, 0.0)),
+            Law::J2(J2::new(1.0, 0.45, 1.0, 1e30, 1.0)),
         ]
     }
 
@@ -235,7 +305,7 @@ mod suite {
             for law in laws() {
                 let [c11, c12, c22] = tensor::right_cauchy_green(f);
                 let along = law.speeds(f, tensor::smaller_eigenvector(c11, c12, c22));
-                for (closed, along) in law.largest_speeds(f).iter().zip(along) {
+                for (closed, along) in law.largest_speeds(f, &law.virgin()).iter().zip(along) {
                     // The eigenvector is exact to 1e-8, which is 1e-16 in c^2; c_s^2 there is a difference of numbers that
                     // are up to 1e3 times larger, at 1e-16 each.
                     prop_assert!((closed / along - 1.0).abs() < 1e-12, "{closed} {along}");
@@ -260,7 +330,7 @@ mod suite {
         #[test]
         fn largest_speed_bounds_the_speed_in_every_direction(f in deformation(), angle in 0.0..6.3f64) {
             for law in laws() {
-                let largest = law.largest_speeds(f)[0];
+                let largest = law.largest_speeds(f, &law.virgin())[0];
                 let c = law.speeds(f, [angle.cos(), angle.sin()])[0];
                 prop_assert!(c <= largest * (1.0 + 1e-12), "{c} {largest}");
             }

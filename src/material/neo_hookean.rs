@@ -125,7 +125,7 @@ impl Material for NeoHookean {
     /// Along a principal direction of stretch l1, the other being l2, f and g are parallel, f.g = J and g.g = l2^2: B has
     /// the eigenvalues (kappa + 5 A I/(9 J^2)) l2^2 - A/3 and A. The fastest is that of the larger l2.
     #[inline(always)]
-    fn largest_squares<L: Lane>(&self, f: [L; 4]) -> [L; 2] {
+    fn largest_squares<L: Lane>(&self, f: [L; 4], _: &[L]) -> [L; 2] {
         let terms = self.terms(f);
         let [c11, c12, c22] = tensor::right_cauchy_green(f);
         let stretch2 = tensor::eigenvalues(c11, c12, c22)[0];

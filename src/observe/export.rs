@@ -11,9 +11,10 @@ use crate::operators::Certificate;
 pub fn grid(mesh: &Mesh, solution: &Solution, fields: &[Field]) -> HighOrderGrid {
     let degree = solution.basis.len() - 1;
     let mut out = HighOrderGrid::of_mesh(mesh, degree);
-    let weights: Vec<Vec<f64>> = lagrange_quad_nodes(degree).iter().map(|&xi| solution.basis.values_2d(xi)).collect();
-    let points = (0..mesh.cells.len()).flat_map(|cell| weights.iter().map(move |w| (cell, w)));
-    let points: Vec<_> = points.map(|(cell, w)| (cell, solution.combine(cell, w))).collect();
+    let nodes = lagrange_quad_nodes(degree);
+    let weights: Vec<_> = nodes.iter().map(|&xi| (xi, solution.basis.values_2d(xi))).collect();
+    let points = (0..mesh.cells.len()).flat_map(|cell| weights.iter().map(move |at| (cell, at)));
+    let points: Vec<_> = points.map(|(cell, (xi, w))| (cell, solution.combine(cell, *xi, w))).collect();
     out.point_fields = fields.iter().map(|&field| values(field, solution, &points)).collect();
     out
 }

@@ -20,6 +20,9 @@ const COLUMNS: [&str; 11] = [
     "c_max",
 ];
 
+/// Behind those, where a law has memory: what plastic flow has dissipated since the material was virgin.
+const PLASTIC: &str = "plastic_dissipation";
+
 /// Columns of the balance, behind the others; all but the last cumulated since the start of the run.
 const BALANCE: [&str; 8] = [
     "boundary_work",
@@ -36,17 +39,19 @@ const BALANCE: [&str; 8] = [
 pub struct Ledger {
     schedule: Schedule,
     balance: bool,
+    plastic: bool,
     table: Table,
 }
 
 impl Ledger {
-    /// Starts `path` with its header; with `balance` it has the columns of [`Balance`], too.
+    /// Starts `path` with its header; with `plastic` and `balance` it has the column of plastic dissipation and those of
+    /// [`Balance`], too.
     ///
     /// # Errors
     /// Where the file cannot be made.
-    pub fn create(path: &Path, schedule: Schedule, balance: bool) -> Result<Self, Error> {
-        let more = if balance { &BALANCE[..] } else { &[] };
-        Ok(Self { schedule, balance, table: Table::create(path, &[&COLUMNS[..], more].concat())? })
+    pub fn create(path: &Path, schedule: Schedule, plastic: bool, balance: bool) -> Result<Self, Error> {
+        let (memory, more) = (if plastic { &[PLASTIC][..] } else { &[] }, if balance { &BALANCE[..] } else { &[] });
+        Ok(Self { schedule, balance, plastic, table: Table::create(path, &[&COLUMNS[..], memory, more].concat())? })
     }
 }
 
@@ -58,7 +63,7 @@ fn columns(balance: &Balance, totals: &Totals) -> [f64; BALANCE.len()] {
         balance.flux_dissipation,
         balance.boundary_dissipation,
         balance.curl_dissipation,
-        balance.remainder(totals.energy()),
+        balance.remainder(totals.accounted()),
         totals.angular_momentum.unwrap_or(f64::NAN),
         balance.regrid_dissipation,
     ]
@@ -88,6 +93,7 @@ impl Observer for Ledger {
             totals.max_curl,
             view.survey.fastest,
         ];
+        row.extend(self.plastic.then(|| totals.plastic.unwrap_or(0.0)));
         row.extend(view.balance.filter(|_| self.balance).iter().flat_map(|balance| columns(balance, &totals)));
         self.table.push(&row)?;
         // Row by row on the disk: a run that dies leaves its history.

@@ -1,4 +1,4 @@
-//! Snapshots of the grid unknowns, one file each: what `export` and a restart read.
+//! Snapshots of the grid unknowns and internal variables, one file each: what `export` and a restart read.
 
 use super::{NewGrid, Observer, Schedule, View};
 use crate::error::Error;
@@ -56,6 +56,7 @@ pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
         u.extend_from_slice(unknowns);
         displacement.extend_from_slice(others);
     }
+    let internal = scheme.internal_of(state);
     let (time, step, degree) = (state.time, state.step, scheme.operators.degree);
-    Snapshot { time, step, degree, u, displacement, ..Snapshot::default() }
+    Snapshot { time, step, degree, u, displacement, internal, ..Snapshot::default() }
 }

@@ -1,10 +1,12 @@
-//! The discrete solution as a function of the point: polynomials of F and p, stresses by the law from that F.
+//! The discrete solution as a function of the point: polynomials of F and p, stresses by the law from that F and the
+//! internal variables of the nearest point of the cell, which are never interpolated.
 
 use crate::basis::Lagrange;
+use crate::cloud::Cloud;
 use crate::io::snapshot::Snapshot;
-use crate::material::Law;
+use crate::material::{Internal, Law, Response};
 use crate::state::{State, UNKNOWNS};
-use crate::step::Scheme;
+use crate::step::{Scheme, history};
 
 /// The unknowns at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,6 +17,52 @@ pub struct Point {
     pub velocity: [f64; 2],
     /// u, m; zero where it is not integrated.
     pub displacement: [f64; 2],
+    /// Internal variables of the nearest point of the cell.
+    pub internal: Internal<f64>,
+}
+
+impl Point {
+    /// What a law says there, from those internal variables.
+    pub fn response(&self, law: &Law) -> Response {
+        law.response(self.deformation, &self.internal)
+    }
+}
+
+/// Internal variables of all cells, and where they stand.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct Memory {
+    /// The points where the law is evaluated between steps.
+    places: Cloud,
+    /// The first number of each cell in `values`.
+    first: Vec<usize>,
+    /// As [`Scheme::internal_of`] has them.
+    values: Vec<f64>,
+}
+
+impl Memory {
+    /// Of cells with these laws; none where no law has memory. What is missing in `values` is virgin.
+    fn new(laws: &[Law], material: &[usize], places: impl FnOnce() -> Cloud, values: Vec<f64>) -> Option<Self> {
+        if laws.iter().all(|law| law.internal().is_empty()) {
+            return None;
+        }
+        let (places, mut first, mut next) = (places(), Vec::with_capacity(material.len()), 0);
+        for (cell, &law) in material.iter().enumerate() {
+            first.push(next);
+            next += laws[law].internal().len() * places.of(cell).len();
+        }
+        Some(Self { places, first, values })
+    }
+
+    /// The internal variables of the point of a cell that is nearest to xi.
+    fn at(&self, cell: usize, law: &Law, xi: [f64; 2]) -> Internal<f64> {
+        let (mut out, count) = (law.virgin(), law.internal().len());
+        if count > 0 {
+            let point = history::nearest(self.places.of(cell).iter().copied(), xi);
+            let stored = self.values.iter().skip(self.first[cell] + count * point).take(count);
+            out.iter_mut().zip(stored).for_each(|(out, value)| *out = *value);
+        }
+        out
+    }
 }
 
 /// Unknowns of all cells, in the order of the mesh.
@@ -30,6 +78,8 @@ pub struct Solution<'a> {
     pub components: usize,
     /// `[cell][component][node]`.
     pub u: Vec<f64>,
+    /// None where no law has any.
+    memory: Option<Memory>,
 }
 
 impl<'a> Solution<'a> {
@@ -42,11 +92,18 @@ impl<'a> Solution<'a> {
             material,
             components: state.components,
             u: state.unpack(&operators.blocks, operators.nodes()),
+            memory: Memory::new(&scheme.laws, material, || scheme.places(), scheme.internal_of(state)),
         }
     }
 
-    /// That of a snapshot.
-    pub fn of_snapshot(snapshot: &Snapshot, basis: &'a Lagrange, laws: &'a [Law], material: &'a [usize]) -> Self {
+    /// That of a snapshot; `places` are the points where the law is evaluated between steps ([`Scheme::places`]).
+    pub fn of_snapshot(
+        snapshot: &Snapshot,
+        basis: &'a Lagrange,
+        laws: &'a [Law],
+        material: &'a [usize],
+        places: &Cloud,
+    ) -> Self {
         let nodes = basis.len() * basis.len();
         let components = if snapshot.displacement.is_empty() { UNKNOWNS } else { UNKNOWNS + 2 };
         let mut u = Vec::with_capacity(snapshot.u.len() + snapshot.displacement.len());
@@ -56,12 +113,18 @@ impl<'a> Solution<'a> {
                 u.extend_from_slice(&snapshot.displacement[2 * nodes * cell..2 * nodes * (cell + 1)]);
             }
         }
-        Self { basis, laws, material, components, u }
+        let memory = Memory::new(laws, material, || places.clone(), snapshot.internal.clone());
+        Self { basis, laws, material, components, u, memory }
     }
 
     /// Whether the displacement is integrated.
     pub fn has_displacement(&self) -> bool {
         self.components > UNKNOWNS
+    }
+
+    /// Whether a law has memory.
+    pub fn has_memory(&self) -> bool {
+        self.memory.is_some()
     }
 
     /// The law of a cell.
@@ -71,22 +134,24 @@ impl<'a> Solution<'a> {
 
     /// The unknowns at parent coordinates xi of a cell.
     pub fn at(&self, cell: usize, xi: [f64; 2]) -> Point {
-        self.combine(cell, &self.basis.values_2d(xi))
+        self.combine(cell, xi, &self.basis.values_2d(xi))
     }
 
-    /// The unknowns of a cell in the weights of its nodes.
-    pub fn combine(&self, cell: usize, weights: &[f64]) -> Point {
+    /// The unknowns at xi of a cell, from the weights of its nodes there.
+    pub fn combine(&self, cell: usize, xi: [f64; 2], weights: &[f64]) -> Point {
         let n = weights.len();
         let start = cell * self.components * n;
         let value = |k: usize| -> f64 {
             let nodes = &self.u[start + k * n..start + (k + 1) * n];
             nodes.iter().zip(weights).map(|(u, w)| u * w).sum()
         };
-        let density = self.law(cell).density();
+        let law = self.law(cell);
+        let density = law.density();
         Point {
             deformation: [value(0), value(1), value(2), value(3)],
             velocity: [value(4) / density, value(5) / density],
             displacement: if self.has_displacement() { [value(6), value(7)] } else { [0.0; 2] },
+            internal: self.memory.as_ref().map_or(law.virgin(), |memory| memory.at(cell, law, xi)),
         }
     }
 }

@@ -75,6 +75,18 @@ impl Operators {
         self.line.m * self.line.m
     }
 
+    /// Points of a block where the law is evaluated between steps: of the fullest lane; nodes, where there are no points.
+    pub fn block_points(&self, block: usize) -> usize {
+        self.points.as_ref().map_or(self.nodes(), |points| points.first[block + 1] - points.first[block])
+    }
+
+    /// Parent coordinates of the points of a lane where the law is evaluated between steps.
+    pub fn places(&self, block: usize, lane: usize) -> Vec<[f64; 2]> {
+        let Some(points) = &self.points else { return self.line.nodes() };
+        let at = |p: usize| [0, 1].map(|k| points.parent[2 * (points.first[block] + p) + k].0[lane]);
+        (0..points.count[block][lane] as usize).map(at).collect()
+    }
+
     /// Bytes held by matrices and metric terms.
     pub fn bytes(&self) -> usize {
         self.geometry.bytes()

@@ -48,6 +48,8 @@ pub struct Points {
     metric: Vec<F8>,
     /// Parent coordinates of the points: `[point of block][2]`.
     pub parent: Vec<F8>,
+    /// Points of each lane of each block; others are copies of the lane's first.
+    pub count: Vec<[u32; LANES]>,
 }
 
 impl Points {
@@ -71,9 +73,11 @@ impl Points {
     pub fn new(mesh: &Mesh, blocks: &Blocks, line: &Line, sampling: Sampling, pool: PointPool) -> Self {
         let nodes = line.nodes();
         let of = |cell: usize| sampling.of(&nodes, cell);
-        let mut out = Self { pool, first: vec![0], first_metric: vec![0], metric: vec![], parent: vec![] };
+        let mut out =
+            Self { pool, first: vec![0], first_metric: vec![0], metric: vec![], parent: vec![], count: vec![] };
         for (block, cells) in blocks.cells.iter().enumerate() {
             let padded = cells.map(|cell| of(cell).len()).into_iter().max().unwrap_or(0);
+            out.count.push(cells.map(|cell| of(cell).len() as u32));
             let mut metric = Vec::with_capacity(padded);
             for p in 0..padded {
                 let xi = cells.map(|cell| *of(cell).get(p).unwrap_or(&of(cell)[0]));
@@ -109,7 +113,7 @@ impl Points {
     pub fn bytes(&self) -> usize {
         let shared = self.pool.shared.iter().flat_map(|m| m.matrices()).map(|m| m.data.len() * 8).sum::<usize>();
         let own = self.pool.own.iter().flat_map(|m| m.matrices()).map(|m| m.data.len() * 64).sum::<usize>();
-        shared + own + (self.metric.len() + self.parent.len()) * 64
+        shared + own + (self.metric.len() + self.parent.len()) * 64 + size_of_val(&self.count[..])
     }
 }
 

@@ -231,10 +231,18 @@ fn trees(old: &Grid, cloud: &Cloud) -> Vec<RTree<GeomWithData<[f64; 2], usize>>>
     points.into_iter().map(RTree::bulk_load).collect()
 }
 
-/// Internal variables of new points, `[point][variable]` ragged: `first_old` gives where those of each old point begin
-/// (length: points + 1).
-pub fn histories(placed: &Placed, first_old: &[usize], internal: &[f64]) -> Vec<f64> {
-    placed.source.iter().flat_map(|&old| &internal[first_old[old]..first_old[old + 1]]).copied().collect()
+/// Internal variables of the new points, cells in the order of the mesh, points in that of the cloud: `internal` has those of
+/// the old `places` in that order, `count` the number of variables of each material.
+pub fn histories(old: &Grid, places: &Cloud, placed: &Placed, internal: &[f64], count: &[usize]) -> Vec<f64> {
+    let mut ranges = Vec::with_capacity(places.len());
+    let mut next = 0;
+    for (cell, &material) in old.material.iter().enumerate() {
+        for _ in places.of(cell) {
+            ranges.push(next..next + count[material]);
+            next += count[material];
+        }
+    }
+    placed.source.iter().flat_map(|&point| &internal[ranges[point].clone()]).copied().collect()
 }
 
 #[cfg(test)]
@@ -296,9 +304,9 @@ mod tests {
         let (placed, same) = placed(&case, Policy::Keep);
         let (before, after) = (positions(&case.old, &case.cloud), positions(&case.new, &placed.cloud));
         assert_eq!((after.len(), placed.outside), (before.len(), 0));
-        let first: Vec<usize> = (0..=before.len()).map(|p| 2 * p).collect();
+        let material = vec![0; 64];
         let internal: Vec<f64> = (0..2 * before.len()).map(|k| (k as f64).sin()).collect();
-        let moved = histories(&placed, &first, &internal);
+        let moved = histories(&Grid { mesh: &case.old, material: &material }, &case.cloud, &placed, &internal, &[2]);
         for (p, &old) in placed.source.iter().enumerate() {
             assert!(placed.kept[p]);
             // Located to 2^-41 of the cell.

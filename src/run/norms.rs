@@ -17,7 +17,7 @@ pub fn norms(scheme: &Scheme, state: &State, material: &[usize]) -> BTreeMap<Str
     let mut values = Vec::with_capacity(names.len());
     for (cell, &(block, lane)) in scheme.operators.blocks.slot.iter().enumerate() {
         for (a, weights) in weights.iter().enumerate() {
-            let point = solution.combine(cell, weights);
+            let point = solution.combine(cell, scheme.operators.line.basis.node_2d(a), weights);
             values.clear();
             FIELDS.iter().for_each(|field| field.push(solution.law(cell), &point, &mut values));
             let mass = geometry.mass[block * n + a].0[lane];

@@ -60,10 +60,11 @@ impl Report {
         if self.first.is_none() {
             self.clock = (Instant::now(), ProcessTime::now());
             let first = scheme.totals(state);
-            self.balance = work.has_balance().then(|| Balance::starting_at(first.energy()));
+            self.balance = work.has_balance().then(|| Balance::starting_at(first.accounted()));
             self.first = Some(first);
         }
-        self.bytes = self.bytes.max(scheme.operators.bytes() + work.bytes() + size_of_val(&state.u[..]));
+        let state = size_of_val(&state.u[..]) + size_of_val(&state.internal[..]);
+        self.bytes = self.bytes.max(scheme.operators.bytes() + work.bytes() + state);
     }
 
     pub(super) fn count(&mut self, scheme: &Scheme, dt: f64, survey: &Survey, work: &mut Work) {
@@ -80,7 +81,7 @@ impl Report {
     /// What a regrid took of the energy, J/m.
     pub fn regrid(&mut self, before: &Totals, after: &Totals) {
         if let Some(balance) = &mut self.balance {
-            balance.regrid_dissipation += before.energy() - after.energy();
+            balance.regrid_dissipation += before.accounted() - after.accounted();
         }
     }
 
@@ -128,8 +129,11 @@ impl Report {
             ("min_j", json!(self.min_j.min(last.min_j))),
             ("max_curl_f", json!(last.max_curl)),
         ];
+        if let Some(plastic) = last.plastic {
+            pairs.push(("plastic_dissipation", json!(plastic)));
+        }
         if let Some(balance) = &self.balance {
-            pairs.push(("balance", balance_json(balance, last.energy())));
+            pairs.push(("balance", balance_json(balance, last.accounted())));
         }
         let first = self.first.and_then(|first| first.angular_momentum);
         if let Some((first, last)) = first.zip(last.angular_momentum) {

@@ -8,7 +8,6 @@ use crate::boundary::{self, Data};
 use crate::cloud::{self, Cloud, seed};
 use crate::error::{Error, Place, Result};
 use crate::exact::ExactForce;
-use crate::io::snapshot::Snapshot;
 use crate::io::{cloud_file, gmsh, mesh_file, points, store};
 use crate::lane::Kernel;
 use crate::material::Law;
@@ -18,7 +17,7 @@ use crate::operators::{Needs, Operators, Sampling};
 use crate::run::{Folder, Settings};
 use crate::source::{self, BodyForce};
 use crate::state::{State, UNKNOWNS};
-use crate::step::{Method as Integration, Scheme, Sweeps as Picard, Tableau, cfl};
+use crate::step::{Histories, Method as Integration, Scheme, Sweeps as Picard, Tableau, cfl};
 use crate::tensor;
 use crate::{basis::TimeBasis, scene};
 use std::path::Path;
@@ -125,13 +124,17 @@ impl Scene {
 
     /// The laws, in the order of the `[[material]]` tables.
     pub fn build_laws(&self) -> Vec<Law> {
-        let build = |m: &scene::Material| {
-            let parameter = |name: &str| m.parameters.get(name).copied().unwrap_or(f64::NAN);
-            let law = LAWS.iter().find(|law| law.name == m.law)?;
-            Some((law.build)(&parameter, m.density))
-        };
-        // Parsing has refused names that the list lacks.
-        self.materials.iter().filter_map(build).collect()
+        laws(&self.materials)
+    }
+
+    /// Where internal variables stand, as [`Scheme::places`] has it: the cloud, or the nodes.
+    pub fn places(&self, cloud: &Cloud) -> Cloud {
+        if self.scheme.method == Method::AderDgmpm {
+            return cloud.clone();
+        }
+        let (nodes, cells) = (crate::operators::Line::new(self.scheme.degree).nodes(), cloud.first.len() - 1);
+        let first = (0..=cells).map(|cell| cell * nodes.len()).collect();
+        Cloud { first, xi: std::iter::repeat_n(nodes, cells).flatten().collect() }
     }
 
     /// Time integration.
@@ -165,9 +168,11 @@ impl Scene {
         if let Some(exact) = self.build_exact().filter(|exact| exact.body_force([0.0; 2], 0.0).is_some()) {
             sources.push(Box::new(ExactForce(exact)));
         }
+        let laws = self.build_laws();
         Scheme {
+            histories: Histories::new(&operators, &laws),
             operators,
-            laws: self.build_laws(),
+            laws,
             method: self.integration(),
             flux: self.scheme.flux,
             boundaries,
@@ -208,33 +213,9 @@ impl Scene {
                 u.into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
             }
         }
-        Ok(State::pack(&scheme.operators.blocks, n, components, &cells))
-    }
-
-    /// The state of a snapshot, with its time and step.
-    fn state_of_snapshot(&self, path: &Path, scheme: &Scheme) -> Result<State> {
-        let snapshot = Snapshot::read(path)?;
-        let (cells, n) = (scheme.operators.blocks.slot.len(), scheme.operators.nodes());
-        let fail = |what: String, remedy: &str| self.error("initial.snapshot", what, remedy);
-        if snapshot.cells() != cells || snapshot.degree != scheme.operators.degree {
-            let (given, degree) = (snapshot.cells(), snapshot.degree);
-            let what = format!(
-                "the snapshot has {given} cells of degree {degree}, the scene {cells} of {}",
-                scheme.operators.degree
-            );
-            return Err(fail(what, "give the mesh of that run, or bring it over by `dgmpm regrid`"));
-        }
-        if snapshot.time >= self.end {
-            let what = format!("the snapshot is at {:e} s, and the run ends at {:e} s", snapshot.time, self.end);
-            return Err(fail(what, "give a later time.end"));
-        }
-        let components = if self.wants_displacement() { UNKNOWNS + 2 } else { UNKNOWNS };
-        if components > UNKNOWNS && snapshot.displacement.is_empty() {
-            let what = "an output asks for the displacement, which the snapshot lacks".to_owned();
-            return Err(fail(what, "leave out the field `displacement` and the balance of the ledger"));
-        }
-        let state = State::pack(&scheme.operators.blocks, n, components, &snapshot.unknowns(components));
-        Ok(State { time: snapshot.time, step: snapshot.step, ..state })
+        let mut state = State::pack(&scheme.operators.blocks, n, components, &cells);
+        scheme.set_internal(&mut state, &scheme.virgin_internal());
+        Ok(state)
     }
 
     fn check_initial(&self, f: [f64; 4], v: [f64; 2], x: [f64; 2], cell: u64) -> Result<()> {
@@ -307,12 +288,13 @@ impl Scene {
     /// A line that leaves the mesh ([`Scene::check_lines`] has its place); files that cannot be made.
     pub fn observers(&self, mesh: &Mesh, folder: &Folder) -> Result<Vec<Box<dyn Observer>>> {
         let material = self.material_of_cells(mesh);
+        let plastic = self.build_laws().iter().any(|law| !law.internal().is_empty());
         let mut out: Vec<Box<dyn Observer>> = Vec::new();
         for output in &self.outputs {
             let schedule = schedule(output);
             out.push(match (output.what, samples(output)) {
                 (What::Ledger { balance }, _) => {
-                    Box::new(Ledger::create(&folder.ledger(), schedule.with_end(), balance)?)
+                    Box::new(Ledger::create(&folder.ledger(), schedule.with_end(), plastic, balance)?)
                 }
                 (_, Some(samples)) => {
                     Box::new(Line::create(&folder.line(&output.name), mesh, &material, &samples, schedule)?)
@@ -322,7 +304,7 @@ impl Scene {
         }
         if !self.outputs.iter().any(|output| matches!(output.what, What::Ledger { .. })) {
             let schedule = Schedule::new(crate::observe::When::EverySteps(LEDGER_STEPS), false).with_end();
-            out.push(Box::new(Ledger::create(&folder.ledger(), schedule, false)?));
+            out.push(Box::new(Ledger::create(&folder.ledger(), schedule, plastic, false)?));
         }
         Ok(out)
     }
@@ -330,9 +312,22 @@ impl Scene {
     /// The fields that an export shows: those of the first `fields` output, or all that the state has.
     pub fn export_fields(&self) -> Vec<Field> {
         let asked = self.outputs.iter().find(|output| output.what == What::Fields).map(|output| output.fields.clone());
-        let all = || Field::NAMES.iter().map(|(_, field)| *field).filter(|f| *f != Field::Displacement).collect();
+        let laws = self.build_laws();
+        let there = |field: &Field| *field != Field::Displacement && field.is_of(&laws);
+        let all = || Field::NAMES.iter().map(|(_, field)| *field).filter(there).collect();
         asked.unwrap_or_else(all)
     }
+}
+
+/// The laws of some materials.
+pub(super) fn laws(materials: &[scene::Material]) -> Vec<Law> {
+    let build = |m: &scene::Material| {
+        let parameter = |name: &str| m.parameters.get(name).copied().unwrap_or(f64::NAN);
+        let law = LAWS.iter().find(|law| law.name == m.law)?;
+        Some((law.build)(&parameter, m.density))
+    };
+    // Parsing has refused names that the list lacks.
+    materials.iter().filter_map(build).collect()
 }
 
 impl scene::Initial {

@@ -3,7 +3,9 @@
 use super::Scene;
 use super::reader::{Check, FINITE, POSITIVE, Reader};
 use crate::error::Result;
-use crate::exact::{Exact as Solution, LinearBar, Manufactured, Riemann, SimpleWave, Vortex, WallImpact};
+use crate::exact::{
+    Exact as Solution, LinearBar, Manufactured, PlasticImpact, Riemann, SimpleWave, Vortex, WallImpact,
+};
 use crate::material::Law;
 use crate::mesh::{Mesh, map};
 use std::collections::BTreeMap;
@@ -32,6 +34,8 @@ pub struct Entry {
     parameters: &'static [(&'static str, f64, Check)],
     /// Whether it holds for a linear law only.
     linear: bool,
+    /// Whether it holds for laws with plastic strain, and no others.
+    plastic: bool,
     /// How many materials it takes at most.
     materials: usize,
     build: Build,
@@ -47,6 +51,7 @@ pub const SOLUTIONS: &[Entry] = &[
         name: "simple-wave",
         parameters: &[("amplitude", 0.1, BELOW_1), CENTRE, WIDTH],
         linear: false,
+        plastic: false,
         materials: 1,
         build: |of, laws| Some(Arc::new(SimpleWave::new(laws[0].clone(), of("amplitude"), of("centre"), of("width")))),
     },
@@ -54,13 +59,23 @@ pub const SOLUTIONS: &[Entry] = &[
         name: "wall-impact",
         parameters: &[("speed", 200.0, POSITIVE)],
         linear: false,
+        plastic: false,
         materials: 1,
         build: |of, laws| Some(Arc::new(WallImpact::new(&laws[0], of("speed")))),
+    },
+    Entry {
+        name: "plastic-impact",
+        parameters: &[("speed", 200.0, POSITIVE)],
+        linear: false,
+        plastic: true,
+        materials: 1,
+        build: |of, laws| Some(Arc::new(PlasticImpact::new(&laws[0], of("speed"))?)),
     },
     Entry {
         name: "linear-bar",
         parameters: &[("length", 3.0, POSITIVE), ("amplitude", 1e-3, BELOW_1), CENTRE, WIDTH],
         linear: true,
+        plastic: false,
         materials: 1,
         build: |of, laws| {
             let (length, amplitude) = (of("length"), of("amplitude"));
@@ -71,6 +86,7 @@ pub const SOLUTIONS: &[Entry] = &[
         name: "manufactured",
         parameters: &[("amplitude", 0.05, BELOW_1), ("length", 1.0, POSITIVE)],
         linear: false,
+        plastic: false,
         materials: 1,
         build: |of, laws| Some(Arc::new(Manufactured::new(laws[0].clone(), of("amplitude"), of("length")))),
     },
@@ -84,6 +100,7 @@ pub const SOLUTIONS: &[Entry] = &[
             ("period", 1.0, POSITIVE),
         ],
         linear: false,
+        plastic: false,
         materials: 1,
         build: |of, laws| {
             let centre = [of("centre_x"), of("centre_y")];
@@ -100,6 +117,7 @@ pub const SOLUTIONS: &[Entry] = &[
             ("right_velocity", 0.0, FINITE),
         ],
         linear: false,
+        plastic: false,
         materials: 2,
         build: |of, laws| {
             let states = [[of("left_stretch"), of("left_velocity")], [of("right_stretch"), of("right_velocity")]];
@@ -136,6 +154,16 @@ impl Scene {
         if entry.linear && self.materials.iter().any(|material| material.law != "linear-elastic") {
             let what = format!("\"{name}\" holds for a linear law only");
             return Err(self.error("exact.kind", what, "give the material law = \"linear-elastic\""));
+        }
+        if let Some(law) = self.build_laws().iter().position(|law| law.internal().is_empty() == entry.plastic) {
+            let law = &self.materials[law].law;
+            let what = format!("\"{name}\" is no solution for the law \"{law}\"");
+            let remedy = if entry.plastic {
+                "give the material law = \"j2\""
+            } else {
+                "for law = \"j2\" there is \"plastic-impact\""
+            };
+            return Err(self.error("exact.kind", what, remedy));
         }
         let Some(solution) = self.build_exact() else {
             let what = format!("\"{name}\" has no solution: the impact would press a material to nothing");

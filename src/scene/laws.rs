@@ -1,7 +1,7 @@
 //! The laws that scenes can name, with their parameters: what a `[[material]]` is checked against.
 
-use super::reader::{Check, POSITIVE};
-use crate::material::{self, LinearElastic, NeoHookean};
+use super::reader::{Check, NOT_NEGATIVE, POSITIVE};
+use crate::material::{self, J2, LinearElastic, NeoHookean};
 
 /// A law and its parameters, all required.
 #[derive(Debug)]
@@ -28,15 +28,15 @@ pub struct Parameter {
     pub(super) check: Check,
 }
 
+const YOUNG: Parameter = Parameter { name: "young", unit: "Pa", check: POSITIVE };
+const POISSON: Parameter = Parameter {
+    name: "poisson",
+    unit: "",
+    check: Check { range: "greater than -1 and less than 0.5", holds: |nu| nu > -1.0 && nu < 0.5 },
+};
+
 /// Young's modulus and Poisson's ratio.
-const ISOTROPIC: &[Parameter] = &[
-    Parameter { name: "young", unit: "Pa", check: POSITIVE },
-    Parameter {
-        name: "poisson",
-        unit: "",
-        check: Check { range: "greater than -1 and less than 0.5", holds: |nu| nu > -1.0 && nu < 0.5 },
-    },
-];
+const ISOTROPIC: &[Parameter] = &[YOUNG, POISSON];
 
 /// Every law.
 pub const LAWS: &[Law] = &[
@@ -49,5 +49,18 @@ pub const LAWS: &[Law] = &[
         name: "linear-elastic",
         parameters: ISOTROPIC,
         build: |of, density| material::Law::Linear(LinearElastic::new(of("young"), of("poisson"), density)),
+    },
+    Law {
+        name: "j2",
+        parameters: &[
+            YOUNG,
+            POISSON,
+            Parameter { name: "yield_stress", unit: "Pa", check: POSITIVE },
+            Parameter { name: "hardening", unit: "Pa", check: NOT_NEGATIVE },
+        ],
+        build: |of, density| {
+            let (yield_stress, hardening) = (of("yield_stress"), of("hardening"));
+            material::Law::J2(J2::new(of("young"), of("poisson"), density, yield_stress, hardening))
+        },
     },
 ];

@@ -17,6 +17,7 @@ pub mod portable;
 mod read;
 mod reader;
 pub mod regrid;
+mod restart;
 mod sets;
 mod suggest;
 

@@ -3,6 +3,7 @@
 use super::reader::{Check, FINITE, POSITIVE, Reader};
 use super::{Field, Output, Scene, What, When};
 use crate::error::Result;
+use crate::material::Law;
 
 impl Scene {
     /// What is odd and no error: outputs that lie after the end of the run, as after `--set time.end=..`.
@@ -29,11 +30,11 @@ impl Scene {
     }
 }
 
-/// Reads every `[[output]]`.
-pub(super) fn outputs(tables: Vec<Reader>) -> Result<Vec<Output>> {
+/// Reads every `[[output]]` of a body of these laws.
+pub(super) fn outputs(tables: Vec<Reader>, laws: &[Law]) -> Result<Vec<Output>> {
     let mut outputs: Vec<Output> = Vec::with_capacity(tables.len());
     for mut table in tables {
-        let output = output(&mut table)?;
+        let output = output(&mut table, laws)?;
         let ledger = |output: &Output| matches!(output.what, What::Ledger { .. });
         if ledger(&output) && outputs.iter().any(ledger) {
             return Err(table.wrong("kind", "two [[output]] of kind \"ledger\"", "one ledger records all: remove one"));
@@ -56,7 +57,7 @@ enum Kind {
 
 const KINDS: [(&str, Kind); 3] = [("fields", Kind::Fields), ("line", Kind::Line), ("ledger", Kind::Ledger)];
 
-fn output(table: &mut Reader) -> Result<Output> {
+fn output(table: &mut Reader, laws: &[Law]) -> Result<Output> {
     let kind = table.choice("kind", &KINDS, &[])?;
     let kind = kind.ok_or_else(|| table.missing("kind", "\"fields\", \"line\" or \"ledger\""))?;
     let kind_name = KINDS[kind as usize].0;
@@ -67,10 +68,12 @@ fn output(table: &mut Reader) -> Result<Output> {
         Some(When::EverySteps(_)) => None,
         _ => table.boolean("exact_times")?,
     };
-    let all = || Field::NAMES.iter().map(|(_, field)| *field).collect();
+    let all = || Field::NAMES.iter().map(|(_, field)| *field).filter(|field| field.is_of(laws)).collect();
     let (what, fields) = match kind {
-        Kind::Fields => (What::Fields, fields(table)?.unwrap_or_else(all)),
-        Kind::Line => (line(table)?, fields(table)?.unwrap_or_else(|| vec![Field::CauchyStress, Field::Velocity])),
+        Kind::Fields => (What::Fields, fields(table, laws)?.unwrap_or_else(all)),
+        Kind::Line => {
+            (line(table)?, fields(table, laws)?.unwrap_or_else(|| vec![Field::CauchyStress, Field::Velocity]))
+        }
         Kind::Ledger => (What::Ledger { balance: table.boolean("balance")?.unwrap_or(true) }, Vec::new()),
     };
     table.finish()?;
@@ -90,8 +93,12 @@ fn output(table: &mut Reader) -> Result<Output> {
     Ok(Output { name, what, when, exact_times: exact_times.unwrap_or(false), fields })
 }
 
-fn fields(table: &mut Reader) -> Result<Option<Vec<Field>>> {
+fn fields(table: &mut Reader, laws: &[Law]) -> Result<Option<Vec<Field>>> {
     let Some(fields) = table.choices("fields", Field::NAMES)? else { return Ok(None) };
+    if let Some(i) = fields.iter().position(|field| !field.is_of(laws)) {
+        let what = format!("no material of the scene has \"{}\"", fields[i].name());
+        return Err(table.wrong_entry("fields", i, what, "remove it, or give a material law = \"j2\""));
+    }
     let twice = (0..fields.len()).find(|&i| fields[..i].contains(&fields[i]));
     match twice {
         Some(i) => {

@@ -45,7 +45,6 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         title: title.unwrap_or_else(|| origin.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),
         mesh,
         cloud,
-        materials,
         initial: initial(initial_table.as_mut())?,
         exact: super::exact::exact(exact_table.as_mut(), initial_table.is_none())?,
         boundaries: boundaries(boundary_tables)?,
@@ -53,7 +52,8 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         curl: curl(curl_table.as_mut(), scheme.degree)?,
         scheme,
         end,
-        outputs: super::outputs::outputs(output_tables)?,
+        outputs: super::outputs::outputs(output_tables, &super::build::laws(&materials))?,
+        materials,
         regrids: super::regrid::regrids(regrid_tables)?,
         origin: Origin::default(),
     };

@@ -24,6 +24,9 @@ pub(super) const FINITE: Check = Check { range: "finite", holds: |_| true };
 /// A number above 0.
 pub(super) const POSITIVE: Check = Check { range: "greater than 0", holds: |value| value > 0.0 };
 
+/// A number that may be 0.
+pub(super) const NOT_NEGATIVE: Check = Check { range: "not negative", holds: |x| x >= 0.0 };
+
 /// A table that is being read.
 pub(super) struct Reader<'a> {
     table: &'a dyn TableLike,

@@ -23,6 +23,7 @@
 //! averages are larger than those of the solution half-way through the step, and at a shock `flux_dissipation` is too
 //! large by up to the remainder (measured on the paper's impact, S2: .4 to .6 of it; RK4: .01).
 
+use super::history::recall;
 use super::{Scheme, Work};
 use crate::lane::{F8, Lanes, load_array};
 use crate::material::Material;
@@ -31,10 +32,11 @@ use crate::tensor::{dot, times};
 
 /// The balance of energy since the start of a run, in J per metre of thickness.
 ///
-/// E(t) = E(0) + works - dissipations + remainder.
+/// E(t) = E(0) + works - dissipations + remainder, where E holds what plastic flow has dissipated
+/// ([`super::Totals::accounted`]): P is the derivative of both together.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Balance {
-    /// Kinetic and strain energy E(0) at the start.
+    /// Kinetic and strain energy E(0) at the start, with what plastic flow had dissipated.
     pub start: f64,
     /// int t*.v* over boundary and time: what walls, tractions and prescribed velocities give to the body.
     pub boundary_work: f64,
@@ -67,7 +69,7 @@ impl Balance {
         self.flux_dissipation + self.boundary_dissipation + self.curl_dissipation + self.regrid_dissipation
     }
 
-    /// What no cause explains of the `energy` that is there now: the error of time integration.
+    /// What no cause explains of the `energy` (with plastic dissipation) that is there now: the error of time integration.
     pub fn remainder(&self, energy: f64) -> f64 {
         energy - self.start - self.work() + self.dissipation()
     }
@@ -152,14 +154,19 @@ pub(super) fn source_power<L: Lanes>(density: f64, mass: &[F8], mean: &[F8], sou
     L::splat(density) * sum
 }
 
-/// sum_a m_a W(F_a), J/m, of unknowns `u`, [component][node].
+/// sum_a m_a W(F_a), J/m, of unknowns `u`, [component][node], W with what plastic flow dissipates on the way there from
+/// the internal variables `internal`, [node][variable].
 #[inline(always)]
-pub(super) fn strain_energy<L: Lanes, M: Material>(law: &M, mass: &[F8], u: &[F8]) -> L {
+pub(super) fn strain_energy<L: Lanes, M: Material>(law: &M, mass: &[F8], u: &[F8], internal: &[F8]) -> L {
     let n = mass.len();
     let mut sum = L::zero();
     for (a, mass) in mass.iter().enumerate() {
-        let f = super::dense::gather::<L, 4>(u, n, a);
-        sum = L::load(mass).mul_add(law.energy(f, &[]), sum);
+        let (f, internal) = (super::dense::gather::<L, 4>(u, n, a), recall::<L, M>(law, internal, a));
+        let mut energy = law.energy(f, &internal[..M::INTERNAL.len()]);
+        if !M::INTERNAL.is_empty() {
+            energy = energy + law.dissipated(f, &internal[..M::INTERNAL.len()]);
+        }
+        sum = L::load(mass).mul_add(energy, sum);
     }
     sum
 }

@@ -152,7 +152,8 @@ impl Block<'_> {
         };
         let law = &scheme.laws[scheme.operators.blocks.material[self.block]];
         let (mean, stress) = (&mut nodes.mean[..6 * n], &mut nodes.mean_stress[..4 * n]);
-        scheme.kernel.run(AtNodes { law, start, term, mean, stress });
+        let internal = scheme.histories.of(&self.state.internal, self.block);
+        scheme.kernel.run(AtNodes { law, start, term, internal, mean, stress });
         self.scratch.phases.book(Phase::Volume, clock);
     }
 
@@ -185,7 +186,8 @@ impl Block<'_> {
         }
         self.scratch.phases.book(Phase::GridToPoints, clock);
         let (metric, weights, dt) = (points.metric_of(self.block), &time.weights[..], self.stage.dt);
-        let predictor = Predictor { law, matrices, metric, weights, sweeps, dt, kernel };
+        let internal = self.scheme.histories.of(&self.state.internal, self.block);
+        let predictor = Predictor { law, matrices, metric, weights, sweeps, dt, internal, kernel };
         predictor.run::<L>(&mut self.scratch.points);
         self.scratch.phases.book(Phase::Predictor, clock);
         let (arrays, nodes) = (&mut self.scratch.points, &mut self.scratch.nodes);

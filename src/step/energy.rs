@@ -11,8 +11,10 @@ use rayon::prelude::*;
 pub struct Totals {
     /// int |p|^2 / (2 rho0) dX, J/m.
     pub kinetic: f64,
-    /// int W dX, J/m.
+    /// int W dX, J/m: all that is stored.
     pub strain: f64,
+    /// What plastic flow has dissipated since the material was virgin, J/m; only where a law has memory.
+    pub plastic: Option<f64>,
     /// int p dX, kg/s (per metre of thickness).
     pub momentum: [f64; 2],
     /// int (x_1 p_2 - x_2 p_1) dX with x = X + u, kg m/s (per metre of thickness), about the origin; only where the
@@ -31,6 +33,7 @@ impl Totals {
     const EMPTY: Totals = Totals {
         kinetic: 0.0,
         strain: 0.0,
+        plastic: None,
         momentum: [0.0; 2],
         angular_momentum: None,
         deformation: [0.0; 4],
@@ -38,9 +41,10 @@ impl Totals {
         max_curl: 0.0,
     };
 
-    /// No cell yet of a state with or without displacement.
+    /// No cell yet of a state with or without displacement and memory.
     fn empty(state: &State) -> Self {
-        Totals { angular_momentum: state.has_displacement().then_some(0.0), ..Totals::EMPTY }
+        let angular_momentum = state.has_displacement().then_some(0.0);
+        Totals { angular_momentum, plastic: (!state.internal.is_empty()).then_some(0.0), ..Totals::EMPTY }
     }
 
     /// Kinetic and strain energy, J/m.
@@ -48,9 +52,15 @@ impl Totals {
         self.kinetic + self.strain
     }
 
+    /// [`Totals::energy`] and what plastic flow has dissipated: what the balance of a step is about, J/m.
+    pub fn accounted(&self) -> f64 {
+        self.energy() + self.plastic.unwrap_or(0.0)
+    }
+
     fn add(&mut self, other: &Totals) {
         self.kinetic += other.kinetic;
         self.strain += other.strain;
+        self.plastic = self.plastic.zip(other.plastic).map(|(a, b)| a + b);
         self.momentum.iter_mut().zip(other.momentum).for_each(|(a, b)| *a += b);
         self.angular_momentum = self.angular_momentum.zip(other.angular_momentum).map(|(a, b)| a + b);
         self.deformation.iter_mut().zip(other.deformation).for_each(|(a, b)| *a += b);
@@ -83,9 +93,11 @@ impl Scheme {
             let mass = self.operators.geometry.mass[block * n + a].0[lane];
             let [f11, f12, f21, f22, p1, p2]: [f64; 6] = std::array::from_fn(|k| u[k * n + a].0[lane]);
             let f = [f11, f12, f21, f22];
+            let response = law.response(f, &self.internal_at_node(state, block, lane, a));
             sum.add(&Totals {
                 kinetic: mass * (p1 * p1 + p2 * p2) / (2.0 * law.density()),
-                strain: mass * law.energy(f),
+                strain: mass * response.energy,
+                plastic: sum.plastic.map(|_| mass * response.dissipated),
                 momentum: [mass * p1, mass * p2],
                 angular_momentum: self.position(state, block, lane, a).map(|x| mass * (x[0] * p2 - x[1] * p1)),
                 deformation: f.map(|x| mass * x),

@@ -107,15 +107,17 @@ impl<'b> Block<'b> {
         let mass = self.metric().mass;
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
         let one = L::splat(1.0);
+        let nodes = &mut self.scratch.nodes;
         if let Some(sums) = self.sums.as_mut() {
-            let before = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, self.next));
+            let variables = law.internal().len();
+            self.scheme.histories.at_nodes(&self.state.internal, self.block, variables, &mut nodes.internal);
+            let before = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, self.next, &nodes.internal));
             balance::add(one, before, &mut sums.curl_dissipation);
         }
-        let nodes = &mut self.scratch.nodes;
         let arrays = curl::Arrays { weighted: &mut nodes.weighted, coefficients: &mut nodes.coefficients };
         curl::project::<L>(&curl_free.pool, self.block, theta, mass, arrays, self.next);
         if let Some(sums) = self.sums.as_mut() {
-            let after = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, self.next));
+            let after = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, self.next, &nodes.internal));
             balance::add(-one, after, &mut sums.curl_dissipation);
         }
     }

@@ -12,6 +12,7 @@ mod dense;
 mod energy;
 mod finish;
 mod flux;
+pub mod history;
 pub mod phase;
 mod predictor;
 mod runge_kutta;
@@ -25,6 +26,7 @@ mod volume;
 
 pub use balance::Balance;
 pub use energy::Totals;
+pub use history::Histories;
 pub use phase::{Phase, Phases};
 pub use runge_kutta::Tableau;
 pub use survey::{Loss, Survey};
@@ -60,6 +62,8 @@ pub struct Scheme {
     pub operators: Operators,
     /// The laws, by number.
     pub laws: Vec<Law>,
+    /// Where internal variables lie in a state.
+    pub histories: Histories,
     /// Time integration.
     pub method: Method,
     /// Interface flux between cells of one law.
@@ -102,10 +106,11 @@ impl Work {
         let operators = &scheme.operators;
         let points =
             operators.points.as_ref().map_or(0, |p| p.first.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0));
+        let variables = scheme.laws.iter().map(|law| law.internal().len()).max().unwrap_or(0);
         let scratch = || {
             Mutex::new(Scratch {
                 points: predictor::Arrays::new(points, operators.line.m, &scheme.method, !scheme.sources.is_empty()),
-                nodes: volume::Arrays::new(operators.line.m, state.components),
+                nodes: volume::Arrays::new(operators.line.m, state.components, variables),
                 phases: phase::Ticks::of(2 * operators.blocks.len() * scheme.stages()),
             })
         };
@@ -130,7 +135,7 @@ impl Work {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let numbers = self.next.u.len() + self.tiles.numbers();
+        let numbers = self.next.u.len() + self.next.internal.len() + self.tiles.numbers();
         numbers * size_of::<F8>() + self.balance.as_ref().map_or(0, |sums| size_of_val(&sums[..]))
     }
 }
@@ -179,6 +184,9 @@ impl Scheme {
                 let stages = tiles::stages(&times, dt);
                 self.run_stages(&stages[..tableau.stages()], state, survey, work);
             }
+        }
+        if !self.histories.is_empty() {
+            self.remember(state, work);
         }
         work.next.time = state.time + dt;
         work.next.step = state.step + 1;

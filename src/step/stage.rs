@@ -1,5 +1,6 @@
 //! The start of a Runge-Kutta stage: U = U^n + dt sum_j a_ij k_j at the nodes, and the law there.
 
+use super::history::recall;
 use crate::lane::{F8, Lanes, Work, store_array};
 use crate::material::{Law, Material};
 use crate::with_law;
@@ -12,6 +13,8 @@ pub struct AtNodes<'a> {
     pub start: &'a [F8],
     /// One term of the sum, factor and rate, as most tableaux have at each stage.
     pub term: Option<(f64, &'a [F8])>,
+    /// Internal variables at t_n, [node][variable]; empty for a law without.
+    pub internal: &'a [F8],
     /// F and v, [node][6], out.
     pub mean: &'a mut [F8],
     /// P, [node][4], out.
@@ -56,7 +59,8 @@ impl AtNodes<'_> {
             }
             let f = [u[0], u[1], u[2], u[3]];
             store_array([u[0], u[1], u[2], u[3], u[4] * inverse_density, u[5] * inverse_density], &mut mean[a]);
-            store_array(law.stress(f, &mut []), &mut stress[a]);
+            let mut internal = recall::<L, M>(&law, self.internal, a);
+            store_array(law.stress(f, &mut internal[..M::INTERNAL.len()]), &mut stress[a]);
         }
     }
 }

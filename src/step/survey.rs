@@ -1,6 +1,8 @@
 //! The health of a state: current wave speeds (for dt and LCF), min J, and where stability was lost.
 
-use super::predictor::transfer::ToPoints;
+use super::history::recall;
+use super::predictor::{self, transfer::ToPoints};
+use super::volume;
 use super::{Phase, Scheme, Scratch, Work as Memory, dense, with_scratch};
 use crate::lane::{Coefficient, F8, Lanes, Work};
 use crate::material::Material;
@@ -102,7 +104,7 @@ impl Scheme {
                 };
                 let f: [f64; 4] = std::array::from_fn(at);
                 let j = tensor::det(f);
-                let speeds = law.largest_speeds(f);
+                let speeds = law.largest_speeds(f, &self.internal_at(state, block, lane, point));
                 let kind = match () {
                     _ if !finite => LossKind::NotFinite,
                     _ if j <= 0.0 => LossKind::Inverted(j),
@@ -150,33 +152,55 @@ impl Work for Block<'_> {
         let u = &self.state.u[stride * self.block..stride * (self.block + 1)];
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
         let n = operators.nodes();
-        let found = match &operators.points {
-            None => {
-                with_law!(law, law => examine::<L, _>(law, &Strided { f: u, count: n, point: 1, component: n }, &u[4 * n..]))
-            }
-            Some(points) => {
-                let (nodes, arrays) = (&mut self.scratch.nodes.stage, &mut self.scratch.points);
-                let (f, between) = (&mut arrays.start, &mut arrays.between);
-                dense::interleave::<4>(u, n, nodes);
-                let nodes = &nodes[..4 * n];
-                let count = match points.pool.share[self.block] {
-                    Share::Shared(k) => to_points::<L, _>(&points.pool.shared[k], nodes, between, f),
-                    Share::Own(k) => to_points::<L, _>(&points.pool.own[k], nodes, between, f),
-                };
-                with_law!(law, law => examine::<L, _>(law, &Strided { f, count, point: 4, component: 1 }, &u[4 * n..]))
-            }
-        };
+        let internal = self.scheme.histories.of(&self.state.internal, self.block);
+        let points = at_points::<L>(self.scheme, u, self.block, &mut self.scratch.nodes, &mut self.scratch.points);
+        let found = with_law!(law, law => examine::<L, _>(law, &points, internal, &u[4 * n..]));
         self.scratch.phases.book(Phase::Survey, &mut clock);
         found
     }
 }
 
 /// F at `count` points: component k of point p at `point` p + `component` k.
-struct Strided<'a> {
+pub(super) struct Strided<'a> {
     f: &'a [F8],
     count: usize,
     point: usize,
     component: usize,
+}
+
+impl Strided<'_> {
+    /// F at a point.
+    #[inline(always)]
+    pub fn at<L: Lanes>(&self, p: usize) -> [L; 4] {
+        let mut f = [L::zero(); 4];
+        for (k, f) in f.iter_mut().enumerate() {
+            *f = L::load(&self.f[self.point * p + self.component * k]);
+        }
+        f
+    }
+}
+
+/// F of the unknowns of a block at its points; at its nodes, where there are none.
+#[inline(always)]
+pub(super) fn at_points<'a, L: Lanes>(
+    scheme: &Scheme,
+    u: &'a [F8],
+    block: usize,
+    nodes: &mut volume::Arrays,
+    arrays: &'a mut predictor::Arrays,
+) -> Strided<'a> {
+    let n = scheme.operators.nodes();
+    let Some(points) = &scheme.operators.points else {
+        return Strided { f: u, count: n, point: 1, component: n };
+    };
+    let (f, between) = (&mut arrays.start, &mut arrays.between);
+    dense::interleave::<4>(u, n, &mut nodes.stage);
+    let nodes = &nodes.stage[..4 * n];
+    let count = match points.pool.share[block] {
+        Share::Shared(k) => to_points::<L, _>(&points.pool.shared[k], nodes, between, f),
+        Share::Own(k) => to_points::<L, _>(&points.pool.own[k], nodes, between, f),
+    };
+    Strided { f, count, point: 4, component: 1 }
 }
 
 /// F at the points; the number of points.
@@ -193,17 +217,14 @@ fn to_points<L: Lanes, C: Coefficient>(
 
 /// Looks at F at the points and at what else must be finite.
 #[inline(always)]
-fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, others: &[F8]) -> Found {
+fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8], others: &[F8]) -> Found {
     let (mut fastest, mut slowest, mut min_j) = (L::zero(), L::splat(f64::INFINITY), L::splat(f64::INFINITY));
     let mut poison = [L::zero(); 4];
     // A copy: its constants stay in registers.
     let law = *law;
     for p in 0..points.count {
-        let mut f = [L::zero(); 4];
-        for (k, f) in f.iter_mut().enumerate() {
-            *f = L::load(&points.f[points.point * p + points.component * k]);
-        }
-        let squares = law.largest_squares(f);
+        let (f, internal) = (points.at::<L>(p), recall::<L, M>(&law, internal, p));
+        let squares = law.largest_squares(f, &internal[..M::INTERNAL.len()]);
         fastest = fastest.max(squares[0]);
         slowest = slowest.min(squares[1]);
         let j = tensor::det(f);

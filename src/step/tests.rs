@@ -67,6 +67,7 @@ pub(super) fn scheme(
     Scheme {
         operators,
         laws: vec![steel()],
+        histories: Histories::default(),
         method,
         flux: Flux::Rusanov,
         boundaries: mesh.edge_groups.iter().map(|_| boundary()).collect(),

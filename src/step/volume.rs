@@ -54,6 +54,8 @@ pub struct Arrays {
     pub lift: Vec<F8>,
     /// Traces across faces whose lanes lie apart: [face][point][width].
     pub across: Vec<F8>,
+    /// Internal variables that stand for the nodes, [node][variable], for the balance of energy; empty without memory.
+    pub internal: Vec<F8>,
     /// Rows of F in the weighted inner product, and their coefficients, for the curl-free projection.
     pub weighted: Vec<F8>,
     /// Coefficients of the complement, [row][column].
@@ -61,8 +63,8 @@ pub struct Arrays {
 }
 
 impl Arrays {
-    /// For M nodes a direction and `components` components of the state.
-    pub fn new(m: usize, components: usize) -> Self {
+    /// For M nodes a direction, `components` components of the state and `variables` internal variables of a point.
+    pub fn new(m: usize, components: usize, variables: usize) -> Self {
         let zeros = |count: usize| vec![F8::ZERO; count];
         let n = m * m;
         Self {
@@ -73,6 +75,7 @@ impl Arrays {
             source: zeros(2 * n),
             lift: zeros(4 * 6 * m),
             across: zeros(4 * m * width(true, true)),
+            internal: zeros(variables * n),
             weighted: zeros(4 * n),
             coefficients: zeros(4 * n),
         }

@@ -49,12 +49,12 @@ impl Finer {
         compare(&self.built.mesh, order, &|cell| own.law(cell), &|cell, xi, x| {
             let expected = own.at(cell, xi);
             // A point of the body that another mesh of it lacks would show as an error that is not a number.
-            let nothing = ([f64::NAN; 4], [f64::NAN; 2]);
+            let nothing = ([f64::NAN; 4], [f64::NAN; 2], expected.internal);
             let found = locator.find(x).map_or(nothing, |(cell, xi)| {
                 let point = other.at(cell, xi);
-                (point.deformation, point.velocity)
+                (point.deformation, point.velocity, point.internal)
             });
-            [found, (expected.deformation, expected.velocity)]
+            [found, (expected.deformation, expected.velocity, expected.internal)]
         })
     }
 }

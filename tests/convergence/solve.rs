@@ -13,7 +13,7 @@ use dgmpm::riemann::Flux;
 use dgmpm::run::{Report, Run, Settings};
 use dgmpm::source::Source;
 use dgmpm::state::State;
-use dgmpm::step::{Method, Scheme, Sweeps, Tableau, cfl};
+use dgmpm::step::{Histories, Method, Scheme, Sweeps, Tableau, cfl};
 use std::sync::atomic::AtomicBool;
 
 /// A method, with the layout of its points.
@@ -83,6 +83,7 @@ pub fn scheme(problem: &Problem, mesh: &Mesh, kind: Kind, degree: usize, time_de
     Scheme {
         operators,
         laws: vec![problem.law.clone()],
+        histories: Histories::default(),
         method,
         flux: Flux::Rusanov,
         boundaries,

@@ -12,7 +12,7 @@ use crate::io::{cloud_file, hash, mesh_file, operators_file};
 use crate::lane::Kernel;
 use crate::observe::{NewGrid, Schedule, View};
 use crate::operators::{Blocks, Line, Operators, Stored};
-use crate::regrid::points::{Demand, Placed, Policy, place};
+use crate::regrid::points::{Demand, Placed, Policy, histories, place};
 use crate::regrid::{self, Field, Grid, Transfer};
 use crate::run::{Folder, Pause};
 use crate::scene::grids::Present;
@@ -135,7 +135,11 @@ impl<'a> Regrids<'a> {
         regrid::curl_free(&operators, state.components, &moved.same, &mut moved.u);
         let scheme = pipeline::scheme(self.scene, &body, operators, self.kernel);
         let new = State::pack(&scheme.operators.blocks, n, state.components, &moved.u);
-        let new = State { time: state.time, step: state.step, ..new };
+        let mut new = State { time: state.time, step: state.step, ..new };
+        let (before, after) =
+            ((grid(&old.body.mesh, &old.body.material), &old.scheme), (grid(&body.mesh, &body.material), &scheme));
+        let internal = internal(before, state, after, &moved.same, &placed)?;
+        scheme.set_internal(&mut new, &internal);
         let totals = [old.scheme.totals(state), scheme.totals(&new)];
         clock.lap(5);
         let files = self.write(&body, state.step)?;
@@ -204,11 +208,33 @@ fn grid<'a>(mesh: &'a crate::mesh::Mesh, material: &'a [usize]) -> Grid<'a> {
 /// The weights of the standard error: |F|^2 + |v|^2 / c_p^2 with the speed of the unstrained material.
 pub fn scale(scheme: &Scheme) -> Vec<[f64; 8]> {
     let of = |law: &crate::material::Law| {
-        let [c_p, _] = law.largest_speeds([1.0, 0.0, 0.0, 1.0]);
+        let [c_p, _] = law.largest_speeds([1.0, 0.0, 0.0, 1.0], &law.virgin());
         let p = (law.density() * c_p).powi(-2);
         [1.0, 1.0, 1.0, 1.0, p, p, 0.0, 0.0]
     };
     scheme.laws.iter().map(of).collect()
+}
+
+/// Internal variables of a state at the points (or nodes) of a new grid; empty where no law has any.
+pub fn internal(
+    (from, before): (Grid, &Scheme),
+    state: &State,
+    (to, after): (Grid, &Scheme),
+    same: &[Option<usize>],
+    placed: &Placed,
+) -> Result<Vec<f64>> {
+    let count: Vec<usize> = before.laws.iter().map(|law| law.internal().len()).collect();
+    if count.iter().all(|count| *count == 0) {
+        return Ok(vec![]);
+    }
+    let (places, new, values) = (before.places(), after.places(), before.internal_of(state));
+    if new == placed.cloud {
+        return Ok(histories(&from, &places, placed, &values, &count));
+    }
+    // The law is evaluated at the nodes, which are new points in cells that are new.
+    let demand =
+        Demand { line: &after.operators.line, policy: Policy::Layout, fresh: &new, samples: false, histories: true };
+    Ok(histories(&from, &places, &place(&from, &places, &to, same, &demand)?, &values, &count))
 }
 
 /// Places the points on the new grid.

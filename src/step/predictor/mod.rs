@@ -7,6 +7,7 @@
 mod rates;
 pub mod transfer;
 
+use super::history::recall;
 use super::{Method, Sweeps};
 use crate::lane::{self, Coefficient, F8, Kernel, Lanes, load_array, store_array};
 use crate::material::Material;
@@ -70,6 +71,8 @@ pub struct Predictor<'a, M, C> {
     pub sweeps: &'a Sweeps,
     /// Step, s.
     pub dt: f64,
+    /// Internal variables at t_n, [p][variable]; empty for a law without.
+    pub internal: &'a [F8],
     /// The instruction set.
     pub kernel: Kernel,
 }
@@ -162,7 +165,8 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
         for (k, q) in rest.iter_mut().enumerate() {
             let f = state::<L, 0, 4>(base, before, row, twins + k);
-            put::<L>(turn.apply(self.law.stress(f, &mut [])), q);
+            let mut internal = recall::<L, M>(self.law, self.internal, twins + k);
+            put::<L>(turn.apply(self.law.stress(f, &mut internal[..M::INTERNAL.len()])), q);
         }
         let q = &mut q[..base.len()];
         let inverse_density = L::splat(1.0 / self.law.density());
@@ -197,7 +201,8 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
             for (row, weight) in rows.iter().zip(self.weights) {
                 // Sources do not act on F: from U^n itself.
                 let f = state::<L, 0, 4>(start, before, &row[..last.from], p);
-                let (weight, stress) = (L::splat(*weight), self.law.stress(f, &mut []));
+                let mut internal = recall::<L, M>(self.law, self.internal, p);
+                let (weight, stress) = (L::splat(*weight), self.law.stress(f, &mut internal[..M::INTERNAL.len()]));
                 for i in 0..4 {
                     sum[i] = weight.mul_add(stress[i], sum[i]);
                 }

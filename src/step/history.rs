@@ -1,0 +1,295 @@
+//! Internal variables: where they lie in a state, how a step ends for them, and their order by cell.
+//!
+//! They stand at the points where the law is evaluated between steps, the material points of a block or (ADER-DGFEM,
+//! RK-DGFEM) its nodes, and are never projected. The predictor and every stage integrate the law from their values h_n at
+//! the start of the step, without storing what comes out; the step ends with h_(n+1) = law(F_p^(n+1), h_n).
+
+use super::survey::{Strided, at_points};
+use super::{Phase, Scheme, Scratch, Work as Memory, with_scratch};
+use crate::cloud::Cloud;
+use crate::lane::{F8, LANES, Lanes, Work};
+use crate::material::{Internal, Law, MOST_INTERNAL, Material};
+use crate::operators::Operators;
+use crate::state::State;
+use crate::with_law;
+use std::ops::Range;
+use std::sync::Mutex;
+
+/// Where the internal variables of each block lie in [`State::internal`], `[point][variable]`. Nothing where no law has
+/// any.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Histories {
+    /// By block (length: blocks + 1).
+    first: Vec<usize>,
+    /// For each node of each block with memory the point whose history stands for it, see [`nearest`].
+    nearest: Vec<[u32; LANES]>,
+    /// Where the nodes of each block begin in `nearest`.
+    first_node: Vec<usize>,
+}
+
+impl Histories {
+    /// Those of the blocks of `operators` under these laws.
+    pub fn new(operators: &Operators, laws: &[Law]) -> Self {
+        if laws.iter().all(|law| law.internal().is_empty()) {
+            return Self::default();
+        }
+        let mut out = Self { first: vec![0], nearest: vec![], first_node: vec![0] };
+        for (block, &material) in operators.blocks.material.iter().enumerate() {
+            let variables = laws[material].internal().len();
+            out.first.push(out.first[block] + variables * operators.block_points(block));
+            if variables > 0 {
+                out.nearest.extend(nearest_of_block(operators, block));
+            }
+            out.first_node.push(out.nearest.len());
+        }
+        out
+    }
+
+    /// Whether no law has memory.
+    pub fn is_empty(&self) -> bool {
+        self.first.is_empty()
+    }
+
+    /// Numbers of a state.
+    pub fn len(&self) -> usize {
+        self.first.last().copied().unwrap_or(0)
+    }
+
+    /// Those of a block, none for an elastic one.
+    #[inline]
+    pub fn of<'a>(&self, internal: &'a [F8], block: usize) -> &'a [F8] {
+        match self.first.get(block..block + 2) {
+            Some(&[from, to]) => &internal[from..to],
+            _ => &[],
+        }
+    }
+
+    /// The point whose history stands for a node, in each lane.
+    fn nearest(&self, block: usize) -> &[[u32; LANES]] {
+        match self.first_node.get(block..block + 2) {
+            Some(&[from, to]) => &self.nearest[from..to],
+            _ => &[],
+        }
+    }
+
+    /// Those that stand for the nodes of a block, `[node][variable]`, into `out`.
+    pub(super) fn at_nodes(&self, internal: &[F8], block: usize, variables: usize, out: &mut [F8]) {
+        let (own, nearest) = (self.of(internal, block), self.nearest(block));
+        for (out, points) in out.chunks_exact_mut(variables.max(1)).zip(nearest) {
+            for (k, out) in out.iter_mut().enumerate() {
+                *out = F8(std::array::from_fn(|lane| own[points[lane] as usize * variables + k].0[lane]));
+            }
+        }
+    }
+}
+
+/// The point of `points` that is nearest to `xi`, in parent coordinates; the first of those that are equally near.
+pub fn nearest(points: impl Iterator<Item = [f64; 2]>, xi: [f64; 2]) -> usize {
+    let distance = |p: [f64; 2]| (p[0] - xi[0]).powi(2) + (p[1] - xi[1]).powi(2);
+    let closer = |best: (usize, f64), (index, p): (usize, [f64; 2])| {
+        let d = distance(p);
+        if d < best.1 { (index, d) } else { best }
+    };
+    points.enumerate().fold((0, f64::INFINITY), closer).0
+}
+
+/// [`nearest`] for all nodes of a block.
+fn nearest_of_block(operators: &Operators, block: usize) -> Vec<[u32; LANES]> {
+    let lists: [Vec<[f64; 2]>; LANES] = std::array::from_fn(|lane| operators.places(block, lane));
+    let of_node = |a: usize| {
+        let xi = operators.line.basis.node_2d(a);
+        std::array::from_fn(|lane| nearest(lists[lane].iter().copied(), xi) as u32)
+    };
+    (0..operators.nodes()).map(of_node).collect()
+}
+
+/// The internal variables of a point of a block, for a law.
+#[inline(always)]
+pub fn recall<L: Lanes, M: Material>(_: &M, block: &[F8], point: usize) -> Internal<L> {
+    let mut out = [L::zero(); MOST_INTERNAL];
+    let count = M::INTERNAL.len();
+    for (out, stored) in out.iter_mut().zip(&block[count * point..][..count]) {
+        *out = L::load(stored);
+    }
+    out
+}
+
+/// The end of a step in one block.
+struct Remember<'a> {
+    scheme: &'a Scheme,
+    block: usize,
+    /// The new unknowns of the block.
+    u: &'a [F8],
+    /// h_n
+    before: &'a [F8],
+    /// h_(n+1), out.
+    after: &'a mut [F8],
+    scratch: &'a mut Scratch,
+}
+
+impl Work for Remember<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { scheme, block, u, before, after, scratch } = self;
+        let mut clock = scratch.phases.clock();
+        let points = at_points::<L>(scheme, u, block, &mut scratch.nodes, &mut scratch.points);
+        with_law!(&scheme.laws[scheme.operators.blocks.material[block]], law => {
+            remember::<L, _>(*law, &points, before, after);
+        });
+        scratch.phases.book(Phase::Survey, &mut clock);
+    }
+}
+
+/// h_(n+1) = law(F, h_n) at all points.
+#[inline(always)]
+fn remember<L: Lanes, M: Material>(law: M, points: &Strided, before: &[F8], after: &mut [F8]) {
+    let variables = M::INTERNAL.len();
+    if variables == 0 {
+        return;
+    }
+    for (p, after) in after.chunks_exact_mut(variables).enumerate() {
+        let mut internal = recall::<L, M>(&law, before, p);
+        law.stress(points.at::<L>(p), &mut internal[..variables]);
+        for (value, after) in internal.into_iter().zip(after) {
+            value.store(after);
+        }
+    }
+}
+
+/// The blocks of a range that are still to be done, and their part of the new internal variables.
+struct Part<'a> {
+    scheme: &'a Scheme,
+    state: &'a State,
+    u: &'a [F8],
+    scratch: &'a [Mutex<Scratch>],
+    blocks: Range<usize>,
+    after: &'a mut [F8],
+}
+
+impl Part<'_> {
+    /// Halves until a block is left: numbers of blocks differ in length, and nothing may be allocated.
+    fn run(self) {
+        let Self { scheme, state, u, scratch, blocks, after } = self;
+        if after.is_empty() {
+            return;
+        }
+        let Range { start, end } = blocks;
+        if end - start > 1 {
+            let middle = start.midpoint(end);
+            let first = &scheme.histories.first;
+            let (left, right) = after.split_at_mut(first[middle] - first[start]);
+            let part = |blocks, after| Part { scheme, state, u, scratch, blocks, after };
+            let (left, right) = (part(start..middle, left), part(middle..end, right));
+            rayon::join(|| left.run(), || right.run());
+            return;
+        }
+        let stride = state.components * scheme.operators.nodes();
+        let (u, before) = (&u[stride * start..stride * end], scheme.histories.of(&state.internal, start));
+        with_scratch(scratch, |scratch| {
+            scheme.kernel.run(Remember { scheme, block: start, u, before, after, scratch });
+        });
+    }
+}
+
+impl Scheme {
+    /// h_(n+1) = law(F_p^(n+1), h_n) into `memory.next`, from the state at t_n.
+    pub(super) fn remember(&self, state: &State, memory: &mut Memory) {
+        let blocks = 0..self.operators.blocks.len();
+        let (State { u, internal, .. }, scratch) = (&mut memory.next, &memory.scratch[..]);
+        Part { scheme: self, state, u, scratch, blocks, after: internal }.run();
+    }
+
+    /// The internal variables of a point of a lane; what virgin material has, where the law has none.
+    pub(super) fn internal_at(&self, state: &State, block: usize, lane: usize, point: usize) -> Internal<f64> {
+        let law = &self.laws[self.operators.blocks.material[block]];
+        let mut out = law.virgin();
+        let count = law.internal().len();
+        let own = self.histories.of(&state.internal, block);
+        for (out, stored) in out.iter_mut().zip(own.iter().skip(count * point).take(count)) {
+            *out = stored.0[lane];
+        }
+        out
+    }
+
+    /// Those of the point whose history stands for a node.
+    pub(super) fn internal_at_node(&self, state: &State, block: usize, lane: usize, node: usize) -> Internal<f64> {
+        let point = self.histories.nearest(block).get(node).map_or(0, |points| points[lane] as usize);
+        self.internal_at(state, block, lane, point)
+    }
+
+    /// Where internal variables stand: the points of each cell, in the order of the mesh and the cloud.
+    pub fn places(&self) -> Cloud {
+        let mut out = Cloud { first: vec![0], xi: vec![] };
+        for &(block, lane) in &self.operators.blocks.slot {
+            out.xi.extend(self.operators.places(block, lane));
+            out.first.push(out.xi.len());
+        }
+        out
+    }
+
+    /// All internal variables: for each cell in the order of the mesh and each of its points in the order of the cloud
+    /// (ADER-DGFEM, RK-DGFEM: of the nodes) those of the cell's law, none for elastic ones.
+    pub fn internal_of(&self, state: &State) -> Vec<f64> {
+        let mut out = Vec::new();
+        self.each_point(|block, lane, point, count| {
+            out.extend_from_slice(&self.internal_at(state, block, lane, point)[..count]);
+        });
+        out
+    }
+
+    /// The inverse of [`Scheme::internal_of`]; what is missing in `values` is virgin.
+    pub fn set_internal(&self, state: &mut State, values: &[f64]) {
+        state.internal = vec![F8::ZERO; self.histories.len()];
+        for block in 0..if self.histories.is_empty() { 0 } else { self.operators.blocks.len() } {
+            let virgin = self.laws[self.operators.blocks.material[block]].virgin();
+            let count = self.laws[self.operators.blocks.material[block]].internal().len();
+            let range = self.histories.first[block]..self.histories.first[block + 1];
+            state.internal[range].iter_mut().enumerate().for_each(|(k, out)| *out = F8::splat(virgin[k % count]));
+        }
+        let mut next = values.iter();
+        self.each_point(|block, lane, point, count| {
+            let first = self.histories.first[block] + point * count;
+            for (out, value) in state.internal[first..first + count].iter_mut().zip(next.by_ref()) {
+                out.0[lane] = *value;
+            }
+        });
+        self.pad(state);
+    }
+
+    /// The internal variables of virgin material, in the order of [`Scheme::internal_of`].
+    pub fn virgin_internal(&self) -> Vec<f64> {
+        let mut out = Vec::new();
+        self.each_point(|block, _, _, count| {
+            out.extend_from_slice(&self.laws[self.operators.blocks.material[block]].virgin()[..count]);
+        });
+        out
+    }
+
+    /// Calls `visit(block, lane, point, variables)` for each point of a cell with memory, cells in the order of the mesh.
+    fn each_point(&self, mut visit: impl FnMut(usize, usize, usize, usize)) {
+        if self.histories.is_empty() {
+            return;
+        }
+        for &(block, lane) in &self.operators.blocks.slot {
+            let count = self.laws[self.operators.blocks.material[block]].internal().len();
+            let points = match &self.operators.points {
+                Some(points) => points.count[block][lane] as usize,
+                None => self.operators.nodes(),
+            };
+            (0..if count > 0 { points } else { 0 }).for_each(|point| visit(block, lane, point, count));
+        }
+    }
+
+    /// Points that fill up a lane are copies of its first, and so are their internal variables.
+    fn pad(&self, state: &mut State) {
+        let Some(points) = &self.operators.points else { return };
+        for block in 0..self.histories.first.len().saturating_sub(1) {
+            let count = self.laws[self.operators.blocks.material[block]].internal().len();
+            let own = &mut state.internal[self.histories.first[block]..self.histories.first[block + 1]];
+            for (lane, &real) in points.count[block].iter().enumerate() {
+                (real as usize * count..own.len()).for_each(|at| own[at].0[lane] = own[at % count].0[lane]);
+            }
+        }
+    }
+}
