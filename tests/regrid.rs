@@ -85,10 +85,18 @@ fn conserve(outcome: &Outcome, what: &str) -> usize {
 
 fn energy_never_rises(outcome: &Outcome, what: &str) {
     let energy = outcome.ledger().column("total_energy");
-    let rise = energy.windows(2).map(|e| e[1] / e[0] - 1.0).fold(f64::NEG_INFINITY, f64::max);
-    println!("{what}: largest rise {rise:.1e}");
-    // Rows are ten steps apart. Rounding of sums over some thousand nodes.
-    assert!(rise < 1e-11, "{what}: {rise:e}");
+    let rise = energy.iter().map(|e| e / energy[0] - 1.0).fold(f64::NEG_INFINITY, f64::max);
+    let table = regrids(outcome);
+    let [before, after] = [["kinetic_before", "strain_before"], ["kinetic", "strain"]]
+        .map(|[a, b]| table.column(a).into_iter().zip(table.column(b)).map(|(a, b)| a + b).collect::<Vec<_>>());
+    let jump = after.iter().zip(&before).map(|(a, b)| a / b - 1.0).fold(f64::NEG_INFINITY, f64::max);
+    println!(
+        "{what}: largest change at a regrid {jump:.1e}, over the run {:.1e}",
+        energy[energy.len() - 1] / energy[0] - 1.0
+    );
+    // Rounding of sums over some thousand nodes.
+    assert!(rise < 1e-12, "{what}: {rise:e} above the start");
+    assert!(jump < 1e-12, "{what}: {jump:e} at a regrid");
 }
 
 /// Order within .3 of that without regrids, error at most 1.3 times that on the coarser of the two grids.
@@ -206,32 +214,37 @@ fn regrids_on_the_same_grid_and_cloud_change_no_bit() {
     }
 }
 
-/// What one regrid, from n x n to 1.25 n x 1.25 n, does to the energy of the spinning square.
-fn change_of_energy(degree: usize, n: usize, at: f64, sets: &[&str]) -> f64 {
-    let grid =
-        format!("regrid=[{{at=[{at}],points=\"layout\",rectangle={{size=[1,1],cells=[{m},{m}]}}}}]", m = n * 5 / 4);
+/// What one regrid, from n x n to 1.25 n x 1.25 n, does to kinetic and strain energy of the spinning square, over the whole.
+fn changes_of_energy(degree: usize, n: usize, at: f64, sets: &[&str]) -> [f64; 2] {
+    let m = n * 5 / 4;
+    let grid = format!("regrid=[{{at=[{at}],points=\"layout\",rectangle={{size=[1,1],cells=[{m},{m}]}}}}]");
     let cells = format!("mesh.rectangle.cells=[{n},{n}]");
     let degree = format!("scheme.degree={degree}");
     let end = format!("time.end={}", at + 1e-5);
     let outcome = run("spinning_square.toml", &[&[&*degree, &cells, &grid, &end, "output=[]"], sets].concat());
     let table = regrids(&outcome);
-    let energy = |kinetic: &str, strain: &str| table.column(kinetic)[0] + table.column(strain)[0];
-    (energy("kinetic", "strain") / energy("kinetic_before", "strain_before") - 1.0).abs()
+    let of = |name: &str| table.column(name)[0];
+    let whole = of("kinetic_before") + of("strain_before");
+    [of("kinetic") - of("kinetic_before"), of("strain") - of("strain_before")].map(|change| change / whole)
 }
 
 /// Quadratic in the error of the projection: the order is 2N + 2 where the state is smooth, here a square that spins and
-/// is turned by angles that differ from place to place.
+/// is turned by angles that differ from place to place. Measured: kinetic 3.99, 6.00, 7.96, strain 3.99, 8.0, 7.99.
 #[test]
 fn a_regrid_of_a_smooth_spinning_square_changes_its_energy_by_the_square_of_the_error() {
-    let initial = "initial={velocity=[\"-200*pi*(y-0.5)*(1+0.3*sin(3*x+2*y))\",\"200*pi*(x-0.5)*(1+0.3*cos(2*x-3*y))\"],\
-                   deformation=[\"cos(2*x+y)\",\"-sin(2*x+y)\",\"sin(2*x+y)\",\"cos(2*x+y)\"]}";
+    let spin = "velocity=[\"-200*pi*(y-0.5)*(1+0.3*sin(3*x+2*y))\",\"200*pi*(x-0.5)*(1+0.3*cos(2*x-3*y))\"]";
+    let turn = "deformation=[\"cos(2*x+y)\",\"-sin(2*x+y)\",\"sin(2*x+y)\",\"cos(2*x+y)\"]";
+    let initial = format!("initial={{{spin},{turn}}}");
     for degree in 1..=3 {
         let n = if degree == 3 { 4 } else { 8 };
         // F is no gradient, and is not to be made one: only the projection is looked at.
-        let [coarse, fine] = [n, 2 * n].map(|n| change_of_energy(degree, n, 0.0, &[initial, "curl={control=\"off\"}"]));
-        let order = (coarse / fine).log2();
-        println!("smooth spinning square S{degree}: {coarse:.3e} {fine:.3e} order {order:.2}");
-        assert!(order > 2.0 * degree as f64 + 1.7, "S{degree}: {coarse:e} {fine:e} order {order:.2}");
+        let [coarse, fine] =
+            [n, 2 * n].map(|n| changes_of_energy(degree, n, 0.0, &[&initial, "curl={control=\"off\"}"]));
+        for (k, name) in ["kinetic", "strain"].into_iter().enumerate() {
+            let order = (coarse[k] / fine[k]).abs().log2();
+            println!("smooth spinning square S{degree}, {name}: {:.3e} {:.3e} order {order:.2}", coarse[k], fine[k]);
+            assert!(order > 2.0 * degree as f64 + 1.7, "S{degree} {name}: {coarse:?} {fine:?} order {order:.2}");
+        }
     }
 }
 
@@ -240,7 +253,8 @@ fn a_regrid_of_a_smooth_spinning_square_changes_its_energy_by_the_square_of_the_
 #[test]
 fn a_regrid_of_the_spinning_square_changes_its_energy_by_little_that_falls() {
     for (degree, measured) in [(1, 3.5), (2, 4.4), (3, 4.3)] {
-        let [coarse, fine] = [8, 16].map(|n| change_of_energy(degree, n, 2.5e-4, &[]));
+        let change = |n: usize| changes_of_energy(degree, n, 2.5e-4, &[]).iter().sum::<f64>().abs();
+        let [coarse, fine] = [8, 16].map(change);
         let order = (coarse / fine).log2();
         println!("spinning square S{degree}: {coarse:.3e} {fine:.3e} order {order:.2}");
         assert!(order > measured - 0.5, "S{degree}: {coarse:e} {fine:e} order {order:.2}");

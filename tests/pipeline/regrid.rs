@@ -166,7 +166,8 @@ fn criteria_fire_when_they_are_met_and_not_before() {
     assert_eq!((fired("certificate = 1.5"), fired("certificate = 50")), (Some(0.0), None));
     // A jump of 200 m/s within a cell or two; at the start nothing moves against anything.
     assert!(fired("front = 0.3").is_some_and(|step| step >= 2.0));
-    assert_eq!((fired("distortion = 0.1"), fired("distortion = 0.999999")), (None, Some(2.0)));
+    assert_eq!(fired("distortion = 0.1"), None);
+    assert!(fired("distortion = 0.999999").is_some_and(|step| step >= 2.0));
 }
 
 #[test]
@@ -255,10 +256,13 @@ fn plastic_runs_of_all_methods_go_from_grid_to_grid() {
         bench.write("case.toml", format!("{plastic}[[regrid]]\nevery = 2e-5\npoints = \"layout\"\n{strip}\n"));
         bench.run("run case.toml --out run");
         assert!(!bench.table("run/regrid.csv").1.is_empty(), "{method}");
-        let (state, virgin) = (bench.last("run"), 5);
-        let plastic = state.internal.chunks(virgin).map(|history| history[4]).fold(0.0, f64::max);
-        // The exact plateau has .0258; the wall cell .029, and this grid is coarse.
-        assert!((0.02..0.04).contains(&plastic), "{method}: {plastic}");
+        let (state, variables) = (bench.last("run"), 5);
+        let strain = state.internal.chunks(variables).map(|history| history[4]);
+        let mut yielded: Vec<f64> = strain.filter(|p| *p > 1e-3).collect();
+        yielded.sort_by(f64::total_cmp);
+        // The exact plateau of the uniaxial impact has .0258; these cells are 25 cm wide, and the free side is near.
+        let middle = yielded[yielded.len() / 2];
+        assert!((0.018..0.035).contains(&middle), "{method}: {middle}");
         bench.run("export run");
     }
 }
