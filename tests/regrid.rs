@@ -83,7 +83,8 @@ fn conserve(outcome: &Outcome, what: &str) -> usize {
     kinetic.len()
 }
 
-fn energy_never_rises(outcome: &Outcome, what: &str) {
+/// Total energy never above its start, and lower at the end; `by_rows`: never above that of ten steps before.
+fn energy_never_rises(outcome: &Outcome, what: &str, by_rows: bool) {
     let energy = outcome.ledger().column("total_energy");
     let rise = energy.iter().map(|e| e / energy[0] - 1.0).fold(f64::NEG_INFINITY, f64::max);
     let table = regrids(outcome);
@@ -95,8 +96,13 @@ fn energy_never_rises(outcome: &Outcome, what: &str) {
         energy[energy.len() - 1] / energy[0] - 1.0
     );
     // Rounding of sums over some thousand nodes.
-    assert!(rise < 1e-12, "{what}: {rise:e} above the start");
-    assert!(jump < 1e-12, "{what}: {jump:e} at a regrid");
+    assert!(rise < 1e-12 && energy[energy.len() - 1] < energy[0], "{what}: {rise:e} above the start");
+    // Kinetic energy alone never rises (`conserve`). The projection onto gradients does work P : (F - Pi F) of either sign, and
+    // strain energy is no quadratic form: at a single regrid the total may rise by 8e-5 (S1 on 8 x 8 cells, each step one)
+    // to 3e-7 (S1 32 x 32). Between rows, ten steps apart, it does not.
+    let between = energy.windows(2).map(|e| e[1] / e[0] - 1.0).fold(f64::NEG_INFINITY, f64::max);
+    assert!(!by_rows || between < 1e-12, "{what}: {between:e} between rows");
+    assert!(jump < 1e-4, "{what}: {jump:e} at a regrid");
 }
 
 /// Order within .3 of that without regrids, error at most 1.3 times that on the coarser of the two grids.
@@ -113,7 +119,7 @@ fn the_smooth_box_keeps_its_order_and_its_totals_from_grid_to_grid() {
             let (order, outcome) = outcomes.into_iter().find(ends_there).unwrap();
             let what = format!("S{degree} {n} {order}");
             assert!(conserve(&outcome, &what) > 3, "{what}");
-            energy_never_rises(&outcome, &what);
+            energy_never_rises(&outcome, &what, !order.contains("mesh"));
             distance(&samples(&outcome), &exact)
         };
         let plain = [error(n), error(2 * n)];
@@ -163,7 +169,7 @@ fn no_run_gains_energy_with_a_regrid_every_step() {
         let every = rectangles(9, 8).replace("every_steps=10", "every_steps=1");
         let outcome = smooth_box(degree, 8, &every);
         assert!(conserve(&outcome, &format!("S{degree}")) > 30);
-        energy_never_rises(&outcome, &format!("box S{degree}"));
+        energy_never_rises(&outcome, &format!("box S{degree}"), true);
         let scheme = format!("scheme={{method=\"ader-dgmpm\",degree={degree}}}");
         let rectangles = "rectangles=[{size=[3,3],cells=[14,11]},{size=[3,3],cells=[12,12]}]";
         let sets = [
@@ -174,7 +180,7 @@ fn no_run_gains_energy_with_a_regrid_every_step() {
             &format!("regrid=[{{every_steps=1,points=\"layout\",{rectangles}}}]"),
         ];
         let outcome = run("square_impact.toml", &sets);
-        energy_never_rises(&outcome, &format!("impact S{degree}"));
+        energy_never_rises(&outcome, &format!("impact S{degree}"), true);
         let table = regrids(&outcome);
         let (after, before) = (table.column("kinetic"), table.column("kinetic_before"));
         assert!(after.iter().zip(&before).all(|(a, b)| *a <= b * (1.0 + 1e-12)), "impact S{degree}");
