@@ -1,9 +1,12 @@
-//! Single kernels on eight cells, `cargo bench`: laws, wave speeds, fluxes, and whole steps of a mesh in the cache.
+//! Single kernels on eight cells, `cargo bench`: laws, wave speeds, fluxes, whole steps of a mesh in the cache; and the
+//! location of a million points.
 //! (Seconds of the phases inside of a step are what `dgmpm bench` prints.)
 
 use dgmpm::bench::{Domain, Problem, Setup};
+use dgmpm::cloud::{Locator, Pattern, from_points};
 use dgmpm::lane::{F8, Kernel, Lanes, Work, load_array, store_array};
 use dgmpm::material::{LinearElastic, Material, NeoHookean};
+use dgmpm::mesh::map;
 use dgmpm::riemann::{Acoustic, AcousticCurl, Riemann, Rusanov, Trace};
 use dgmpm::scene::Method;
 use dgmpm::step::{Survey, Work as Memory};
@@ -139,4 +142,38 @@ fn step_ader_dgmpm_lattice(bencher: Bencher, degree: usize) {
 #[divan::bench(args = [1, 2, 3, 4])]
 fn step_ader_dgmpm_any_cloud(bencher: Bencher, degree: usize) {
     step(bencher, Method::AderDgmpm, Some("jitter"), degree);
+}
+
+/// The plate with a hole, every cell in 8 x 8, and 1e6 points in it: along rows as a lattice, or in random order.
+fn locate(bencher: Bencher, rows: bool) {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/plate_hole.msh");
+    let mesh = dgmpm::io::gmsh::read(&path).expect("the mesh of an example is valid").refined(8);
+    let member = vec![true; mesh.cells.len()];
+    let area: f64 = (0..mesh.cells.len()).map(|cell| map::area(&mesh.corners(cell))).sum();
+    let cloud = Pattern::Rotated { angle: 30.0, spacing: (area / 1e6).sqrt() }.seed(&mesh, &member);
+    let of_cell =
+        |cell: usize| cloud.of(cell).iter().map(|&xi| map::position(&mesh.corners(cell), xi)).collect::<Vec<_>>();
+    let mut points: Vec<[f64; 2]> = (0..mesh.cells.len()).flat_map(of_cell).collect();
+    if rows {
+        let row = |x: &[f64; 2]| ((x[1] / (area / 1e6).sqrt()) as i64, (x[0] * 1e9) as i64);
+        points.sort_by_key(row);
+    } else {
+        // A multiplier of the golden ratio spreads neighbours far apart.
+        points.sort_by_key(|x| x[0].to_bits().wrapping_add(x[1].to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    }
+    println!("{} points in {} cells", points.len(), mesh.cells.len());
+    let outside = |why: dgmpm::cloud::Outside| panic!("{why}");
+    bencher
+        .counter(ItemsCount::new(points.len()))
+        .bench_local(|| from_points(&mesh, &Locator::new(&mesh), black_box(&points)).unwrap_or_else(outside));
+}
+
+#[divan::bench(sample_count = 3, sample_size = 1)]
+fn locate_rows_of_points(bencher: Bencher) {
+    locate(bencher, true);
+}
+
+#[divan::bench(sample_count = 3, sample_size = 1)]
+fn locate_points_in_any_order(bencher: Bencher) {
+    locate(bencher, false);
 }

@@ -15,7 +15,8 @@
 //!
 //! The grid ([`mesh`]) has bilinear cells with polynomials Q_N at (N+1)^2 Gauss-Legendre points ([`basis::lagrange`]),
 //! where the mass matrix w_a J_a is diagonal and exact. Material points ([`cloud`]) lie anywhere in the cells, with
-//! moving-least-squares functions chi_p (18) on the full Q_N ([`basis::mls`]). A step ([`step`]) is:
+//! moving-least-squares functions chi_p (18) on the full Q_N ([`basis::mls`]); where the points of a cell cannot carry it,
+//! virtual ones on its Gauss nodes take their place ([`operators::carry`](mod@operators::carry)). A step ([`step`]) is:
 //!
 //! 1. grid to points (22): U_p = sum_a Phi_a(X_p) U_a;
 //! 2. local predictor (15)-(21): at the time nodes tau_s, by Picard sweeps u_s,p <- U_p + dt sum_k At\[s,k\] r_k,p, with

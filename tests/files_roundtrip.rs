@@ -15,6 +15,7 @@ use dgmpm::io::snapshot::{self, Snapshot};
 use dgmpm::io::store::{ArrayRef, Format, Store, write_arrays};
 use dgmpm::io::{cloud_file, hash, mesh_file, pvd, vtu, xdmf};
 use dgmpm::mesh::Mesh;
+use dgmpm::operators::{Certificate, Class};
 use proptest::prelude::*;
 
 fn bits(values: &[f64]) -> Vec<u64> {
@@ -62,6 +63,37 @@ fn cloud_comes_back_for_its_mesh_only() {
     assert_eq!(cloud_file::read_cloud_of(&path, &mesh).unwrap(), cloud);
     mesh.nodes[0][0] = -f64::EPSILON;
     assert!(message(cloud_file::read_cloud_of(&path, &mesh), &path).contains("another mesh"));
+}
+
+#[test]
+fn what_is_known_of_points_and_cells_comes_back_with_their_cloud() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cloud.h5");
+    let mesh = io_samples::mesh();
+    let cloud = io_samples::cloud(&mesh);
+    let cell = |c: usize| Certificate {
+        class: Class::NAMES[c % 4].1,
+        points: c,
+        rank: c / 2,
+        condition: if c == 1 { f64::INFINITY } else { 1.5 },
+        lebesgue: 1.0 / (c + 1) as f64,
+        inside: 2.0,
+        h: 0.1,
+        dt: 1e-7,
+    };
+    let more = cloud_file::More {
+        virtual_points: (0..cloud.len()).map(|p| p % 3 == 0).collect(),
+        fields: vec![
+            Field::new("deformation", Kind::Tensor, io_samples::noise(9 * cloud.len(), 1)),
+            Field::new("plastic_strain", Kind::Scalar, io_samples::noise(cloud.len(), 2)),
+            Field::new("velocity", Kind::Vector, io_samples::noise(3 * cloud.len(), 3)),
+        ],
+        certificates: (0..mesh.cells.len()).map(cell).collect(),
+    };
+    cloud_file::write_with(&path, &cloud, &mesh, &more).unwrap();
+    assert_eq!(cloud_file::read_with(&path, &mesh).unwrap(), (cloud.clone(), more.clone()));
+    let short = cloud_file::More { virtual_points: vec![true], ..more };
+    assert_eq!(cloud_file::write_with(&path, &cloud, &mesh, &short).unwrap_err().exit_code(), 5);
 }
 
 #[test]

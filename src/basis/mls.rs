@@ -91,6 +91,28 @@ impl LineFit {
     }
 }
 
+/// The least-squares fit of P_N (total degree) in X to points at `x`, evaluated at the points `at`: weights `[at][x]`. About
+/// `middle`, in units of the farthest point. None where the points do not carry P_N.
+pub fn patch(degree: usize, middle: [f64; 2], x: &[[f64; 2]], at: &[[f64; 2]]) -> Option<Vec<Vec<f64>>> {
+    let far = x.iter().map(|x| (x[0] - middle[0]).hypot(x[1] - middle[1])).fold(f64::MIN_POSITIVE, f64::max);
+    let row = |x: &[f64; 2]| -> Vec<f64> {
+        let [a, b] = [0, 1].map(|i| legendre(degree, 0.5 + 0.5 * (x[i] - middle[i]) / far).0);
+        (0..=degree).flat_map(|i| (0..=degree - i).map(move |j| (i, j))).map(|(i, j)| a[i] * b[j]).collect()
+    };
+    let size = (degree + 1) * (degree + 2) / 2;
+    if x.len() < size {
+        return None;
+    }
+    let rows: Vec<Vec<f64>> = x.iter().map(row).collect();
+    let matrix = DMatrix::from_fn(x.len(), size, |p, m| rows[p][m]);
+    let svd = matrix.clone().try_svd(false, false, f64::EPSILON, 0)?;
+    if svd.rank(RANK_TOLERANCE * svd.singular_values.max()) < size {
+        return None;
+    }
+    let inverse = inverse(matrix)?;
+    Some(at.iter().map(|x| combine(&inverse, &row(x))).collect())
+}
+
 fn combine(inverse: &DMatrix<f64>, basis: &[f64]) -> Vec<f64> {
     inverse.column_iter().map(|column| column.iter().zip(basis).map(|(a, b)| a * b).sum()).collect()
 }

@@ -71,7 +71,7 @@ impl Setup {
     pub fn build(&self) -> Result<Problem> {
         let (mesh, scene) = self.mesh()?;
         let settings = scene.settings()?;
-        let cloud = scene.build_cloud(&mesh)?;
+        let cloud = scene.sample(&mesh, scene.build_cloud(&mesh)?)?.cloud;
         let material = scene.material_of_cells(&mesh);
         let operators = Operators::build(&mesh, &scene.links(&mesh)?, &material, &scene.needs(&cloud))?;
         let scheme = scene.build_scheme(&mesh, operators, self.kernel);
@@ -138,7 +138,8 @@ impl Setup {
             _ => 1,
         };
         let files = matches!(self.domain, Domain::File(_));
-        let random = self.method == Method::AderDgmpm && self.layout.as_deref() == Some("jitter");
+        let layouts = ["jitter", "random", "cluster", "poisson-disk", "rotated"];
+        let random = self.method == Method::AderDgmpm && self.layout.as_deref().is_some_and(|l| layouts.contains(&l));
         // State, its start, its copy at the end, the next one, the numbers before they are packed; rates.
         let unknowns = UNKNOWNS * n * (5 + stages);
         // A trace has at most ten numbers.

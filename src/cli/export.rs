@@ -1,7 +1,6 @@
 //! `dgmpm export`: a run's snapshots for ParaView, meshio and DOLFINx.
 
 use super::pipeline::Body;
-use super::preprocess::certificates;
 use super::print::say;
 use crate::basis::Lagrange;
 use crate::cloud::Cloud;
@@ -92,11 +91,15 @@ impl Export {
 
     fn sheet(&self, files: &GridFiles) -> Result<Sheet> {
         let mesh = mesh_file::read_mesh(&self.folder.root.join(&files.mesh))?;
-        let cloud = cloud_file::read_cloud_of(&self.folder.root.join(&files.cloud), &mesh)?;
+        let (cloud, more) = cloud_file::read_with(&self.folder.root.join(&files.cloud), &mesh)?;
         self.scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
         let material = self.scene.material_of_cells(&mesh);
-        let body = Body { mesh, cloud, material };
-        let certificates = certificates(&self.scene, &body)?;
+        let body = Body { mesh, cloud, virtual_points: more.virtual_points, deficient: vec![], material };
+        let certificates = match more.certificates {
+            // A grid that came in by a regrid, or a run of an older version.
+            none if none.is_empty() => body.certificates(&self.scene)?,
+            all => all,
+        };
         let cell_fields = export::cell_fields(&body.mesh, &certificates, &body.material);
         let places = self.scene.places(&body.cloud);
         Ok(Sheet { files: files.clone(), body, places, cell_fields })
@@ -149,7 +152,10 @@ impl Export {
             let mut grid = export::grid(&body.mesh, solution, &fields);
             grid.cell_fields = sheet.cell_fields.clone();
             vtu::write_grid(&grid_path, &grid)?;
-            vtu::write_points(&point_path, &export::points(&body.mesh, &body.cloud, solution, &fields))?;
+            vtu::write_points(
+                &point_path,
+                &export::points(&body.mesh, &body.cloud, &body.virtual_points, solution, &fields),
+            )?;
             grids.push((time, grid_path));
             points.push((time, point_path));
             Ok(())

@@ -1,6 +1,7 @@
 //! The program: one file a subcommand, arguments and `run`.
 
 mod bench;
+mod certificates;
 mod export;
 mod mesh;
 mod pipeline;

@@ -2,13 +2,18 @@
 
 use crate::cloud::Cloud;
 use crate::error::{Error, Result};
-use crate::io::{cloud_file, mesh_file, operators_file};
+use crate::io::cloud_file::{self, More};
+use crate::io::{mesh_file, operators_file};
 use crate::lane::Kernel;
 use crate::mesh::{Mesh, map};
-use crate::operators::{Blocks, Line, Operators, Stored};
+use crate::observe::{Solution, export};
+use crate::operators::carry::Deficient;
+use crate::operators::certificate::{Certificate, Class, certify};
+use crate::operators::{Blocks, Line, Operators, Sampling, Stored};
 use crate::run::Folder;
 use crate::scene::regrid::NewMesh;
-use crate::scene::{Scene, build, portable};
+use crate::scene::{Scene, build, portable, read_points};
+use crate::state::State;
 use crate::step::{Loss, Scheme};
 use std::path::{Path, PathBuf};
 
@@ -27,10 +32,33 @@ pub struct Files {
 pub struct Body {
     /// The mesh.
     pub mesh: Mesh,
-    /// Its material points.
+    /// The material points that the scheme samples on.
     pub cloud: Cloud,
+    /// Whether each of them is virtual; empty where none is.
+    pub virtual_points: Vec<bool>,
+    /// The cells that have virtual points in place of those given.
+    pub deficient: Vec<Deficient>,
     /// The number of the material of each cell.
     pub material: Vec<usize>,
+}
+
+impl Body {
+    /// Certificates of all cells at the points where the method samples (nodes for RK), without dt.
+    ///
+    /// # Errors
+    /// As for the fit of a cell.
+    pub fn certificates(&self, scene: &Scene) -> Result<Vec<Certificate>> {
+        let sampling = scene.needs(&self.cloud).sampling.unwrap_or(Sampling::Nodes);
+        let mut all = certify(&self.mesh, &Line::new(scene.scheme.degree), sampling)?;
+        if let Sampling::Cloud(cloud) = sampling {
+            for (cell, certificate) in all.iter_mut().enumerate() {
+                if self.virtual_points.get(cloud.first[cell]) == Some(&true) && certificate.points > 0 {
+                    certificate.class = Class::Deficient;
+                }
+            }
+        }
+        Ok(all)
+    }
 }
 
 impl Files {
@@ -43,15 +71,27 @@ impl Files {
         Ok(mesh)
     }
 
-    /// Reads or makes mesh and cloud.
+    /// Reads or makes mesh and cloud, with virtual points where the cloud cannot carry the degree.
     pub fn body(&self, scene: &Scene) -> Result<Body> {
+        if let (Some(path), true) = (&self.cloud, scene.initial.from_cloud) {
+            let what = "the initial state comes from the cloud of the scene, and another is given by --cloud";
+            return Err(scene.error("initial.from", what, format!("give --set cloud.path={} instead", path.display())));
+        }
         let mesh = self.mesh(scene)?;
-        let cloud = match &self.cloud {
-            Some(path) => build::read_cloud(path, &mesh)?,
-            None => scene.build_cloud(&mesh)?,
+        let given = match &self.cloud {
+            Some(path) => read_points(path, &mesh)?,
+            None => scene.given_points(&mesh)?,
         };
+        let sampled = scene.sample(&mesh, given.cloud)?;
+        let mut virtual_points = sampled.virtual_points;
+        // Points that were virtual before they came into a file still are.
+        if given.virtual_points.iter().any(|is| *is) {
+            virtual_points.resize(sampled.cloud.len(), false);
+            let at = |p: usize| sampled.source.get(p).copied().unwrap_or(p);
+            virtual_points.iter_mut().enumerate().for_each(|(p, is)| *is |= given.virtual_points[at(p)]);
+        }
         let material = scene.material_of_cells(&mesh);
-        Ok(Body { mesh, cloud, material })
+        Ok(Body { mesh, cloud: sampled.cloud, virtual_points, deficient: sampled.deficient, material })
     }
 }
 
@@ -85,7 +125,7 @@ pub fn operators(scene: &Scene, body: &Body, store: &Store) -> Result<(Operators
         }
     }
     let stored = Stored::build(&body.mesh, &blocks, &line, &needs)?;
-    operators_file::write(store.write, &key, &stored)?;
+    operators_file::write(store.write, &key, &stored, &body.certificates(scene)?)?;
     notes.push(format!("matrices written to {}", store.write.display()));
     Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), notes.join("; ")))
 }
@@ -110,10 +150,16 @@ pub fn scheme(scene: &Scene, body: &Body, operators: Operators, kernel: Kernel) 
 }
 
 /// Writes scene, mesh and cloud into a run folder. Paths of the scene are replaced by those of the folder, so that the
-/// folder can be moved and run again.
-pub fn write_input(scene: &Scene, files: &Files, body: &Body, folder: &Folder) -> Result<()> {
+/// folder can be moved and run again. `state`, the initial one, is written at the points where the scene takes it from there.
+pub fn write_input(
+    scene: &Scene,
+    files: &Files,
+    body: &Body,
+    folder: &Folder,
+    certificates: Vec<Certificate>,
+    (scheme, state): (&Scheme, &State),
+) -> Result<()> {
     mesh_file::write_mesh(&folder.mesh(), &body.mesh)?;
-    cloud_file::write_cloud(&folder.cloud(), &body.cloud, &body.mesh)?;
     for (rule, regrid) in scene.regrids.iter().enumerate() {
         match &regrid.grid {
             NewMesh::Files(files) => {
@@ -131,6 +177,15 @@ pub fn write_input(scene: &Scene, files: &Files, body: &Body, folder: &Folder) -
     if let Some(snapshot) = &scene.initial.snapshot {
         copy(&scene.resolve(snapshot), &folder.root.join("initial.h5"))?;
     }
+    let fields = match scene.initial.from_cloud {
+        true => {
+            let solution = Solution::of_state(scheme, state, &body.material);
+            export::point_fields(&body.mesh, &body.cloud, &solution, &scene.fields_of_points(&solution))
+        }
+        false => vec![],
+    };
+    let more = More { virtual_points: body.virtual_points.clone(), fields, certificates };
+    cloud_file::write_with(&folder.cloud(), &body.cloud, &body.mesh, &more)?;
     let text = scene.portable_toml(files.mesh.is_some(), files.cloud.is_some());
     crate::io::pending::write_text(&folder.scene(), &text)
 }

@@ -2,13 +2,12 @@
 
 use super::pipeline::{self, Body, Files, Store};
 use super::print::{mebibytes, row, say, seconds, table};
-use super::{SceneArgs, keep};
+use super::{SceneArgs, certificates, keep};
 use crate::error::{Error, Result};
 use crate::io::operators_file;
 use crate::lane::Kernel;
 use crate::mesh::Mesh;
-use crate::operators::certificate::{Certificate, certify};
-use crate::operators::{Pool, Sampling};
+use crate::operators::{Certificate, Pool};
 use crate::run::Settings;
 use crate::scene::Scene;
 use crate::state::State;
@@ -29,6 +28,9 @@ pub struct Args {
     /// Build again, and replace the file whatever it is
     #[arg(long)]
     force: bool,
+    /// Refuse cells whose points are beyond the limits ([cloud] face_lebesgue, condition), in place of virtual points
+    #[arg(long)]
+    strict: bool,
 }
 
 /// Runs it.
@@ -37,6 +39,9 @@ pub fn run(args: &Args) -> Result<()> {
     keep(&args.out, args.force || operators_file::may_replace(&args.out))?;
     let settings = scene.settings()?;
     let body = args.files.body(&scene)?;
+    if args.strict {
+        certificates::strict(&scene, &body)?;
+    }
     let look = if args.force { vec![] } else { vec![args.out.as_path()] };
     let (operators, origin) = pipeline::operators(&scene, &body, &Store { look: &look, write: &args.out })?;
     let scheme = pipeline::scheme(&scene, &body, operators, Kernel::widest());
@@ -46,19 +51,22 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Certificates of all cells at the points where the method samples (nodes for RK).
-pub fn certificates(scene: &Scene, body: &Body) -> Result<Vec<Certificate>> {
-    let sampling = scene.needs(&body.cloud).sampling.unwrap_or(Sampling::Nodes);
-    certify(&body.mesh, &crate::operators::Line::new(scene.scheme.degree), sampling)
-}
-
-/// Prints classes, memory, the smallest step and the largest Lebesgue constant with their cells, and the cost.
-pub fn report(scene: &Scene, body: &Body, scheme: &Scheme, state: &State, settings: Settings) -> Result<()> {
-    let certificates = certificates(scene, body)?;
+/// Prints classes, memory, the smallest step and the worst cells, and the cost; answers the certificates of the cells.
+pub fn report(
+    scene: &Scene,
+    body: &Body,
+    scheme: &Scheme,
+    state: &State,
+    settings: Settings,
+) -> Result<Vec<Certificate>> {
+    let mut certificates = body.certificates(scene)?;
     let operators = &scheme.operators;
     let h = extreme(&body.mesh, &certificates, |c| -c.h);
     let lebesgue = extreme(&body.mesh, &certificates, |c| c.lebesgue);
     let cost = cost(scheme, state, settings, -h.0).map_err(|loss| sick(scene, body, scheme, &loss))?;
+    for (certificate, &(block, lane)) in certificates.iter_mut().zip(&operators.blocks.slot) {
+        certificate.dt = settings.courant * certificate.h / cost.survey.speed[block].0[lane];
+    }
     let memory = operators.bytes() + cost.work + size_of_val(&state.u[..]);
     let mut rows = vec![
         row("method", format!("{} S{}T{}", scene.scheme.method.name(), scene.scheme.degree, scene.scheme.time_degree)),
@@ -76,8 +84,10 @@ pub fn report(scene: &Scene, body: &Body, scheme: &Scheme, state: &State, settin
     rows.push(row("memory", mebibytes(memory)));
     rows.push(row("first dt", format!("{:.4e} s, set by cell {}", cost.dt, h.1)));
     rows.push(row("largest face Lebesgue constant", format!("{:.2} in cell {}", lebesgue.0, lebesgue.1)));
+    rows.extend(certificates::rows(&body.mesh, &certificates));
     rows.push(row("estimate", format!("{:.0} steps, {}", cost.steps, seconds(cost.seconds))));
     table(&rows);
+    certificates::word(scene, body).into_iter().for_each(say);
     if let Some(growth) = cfl::growth(&scheme.method, scene.scheme.degree) {
         say(format!(
             "note: ADER of degree {} grows weakly at any dt: {growth:.0e} a step, a factor of {:.3} over this run",
@@ -85,7 +95,7 @@ pub fn report(scene: &Scene, body: &Body, scheme: &Scheme, state: &State, settin
             (growth * cost.steps).exp()
         ));
     }
-    Ok(())
+    Ok(certificates)
 }
 
 /// The largest value of a figure, and the number of its cell.
@@ -106,6 +116,7 @@ fn sick(scene: &Scene, body: &Body, scheme: &Scheme, loss: &Loss) -> Error {
 }
 
 struct Cost {
+    survey: Survey,
     dt: f64,
     steps: f64,
     seconds: f64,
@@ -118,7 +129,7 @@ fn cost(scheme: &Scheme, state: &State, settings: Settings, h: f64) -> std::resu
     let mut survey = Survey::default();
     scheme.survey(state, &work, &mut survey)?;
     let dt = settings.courant * h / survey.fastest;
-    let steps = (settings.end / dt).ceil();
+    let steps = ((settings.end - state.time) / dt).ceil();
     let mut trial = || {
         let clock = Instant::now();
         scheme.step(state, dt, &survey, &mut work);
@@ -129,5 +140,5 @@ fn cost(scheme: &Scheme, state: &State, settings: Settings, h: f64) -> std::resu
     // The first trial touches the memory for the first time.
     let _ = trial();
     let seconds = trial() * steps;
-    Ok(Cost { dt, steps, seconds, work: work.bytes() })
+    Ok(Cost { survey, dt, steps, seconds, work: work.bytes() })
 }

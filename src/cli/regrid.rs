@@ -5,8 +5,9 @@ use super::pipeline::{self, Body};
 use super::print::say;
 use super::rebuild::{internal, place_points, scale};
 use crate::error::{Error, Result};
+use crate::io::cloud_file::{self, More};
 use crate::io::snapshot::{self, GridFiles, Snapshot};
-use crate::io::{cloud_file, mesh_file, pending};
+use crate::io::{mesh_file, pending};
 use crate::lane::Kernel;
 use crate::observe;
 use crate::operators::Operators;
@@ -61,7 +62,8 @@ pub fn run(args: &Args) -> Result<()> {
     report(&scheme.totals(&state), &after.totals(&new));
     folder.clear_results()?;
     mesh_file::write_mesh(&folder.mesh(), &body.mesh)?;
-    cloud_file::write_cloud(&folder.cloud(), &body.cloud, &body.mesh)?;
+    let more = More { virtual_points: body.virtual_points.clone(), ..More::default() };
+    cloud_file::write_with(&folder.cloud(), &body.cloud, &body.mesh, &more)?;
     let initial = folder.root.join("initial.h5");
     let files = GridFiles::default();
     let path = observe::write(&after, &new, &files, &folder.snapshots())?;
@@ -110,10 +112,10 @@ fn snapshot_of(from: &Folder, step: Option<usize>) -> Result<PathBuf> {
 
 fn read_body(scene: &Scene, from: &Folder, files: &GridFiles) -> Result<Body> {
     let mesh = mesh_file::read_mesh(&from.root.join(&files.mesh))?;
-    let cloud = cloud_file::read_cloud_of(&from.root.join(&files.cloud), &mesh)?;
+    let (cloud, more) = cloud_file::read_with(&from.root.join(&files.cloud), &mesh)?;
     scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
     let material = scene.material_of_cells(&mesh);
-    Ok(Body { mesh, cloud, material })
+    Ok(Body { mesh, cloud, virtual_points: more.virtual_points, deficient: vec![], material })
 }
 
 fn build_scheme(scene: &Scene, body: &Body) -> Result<Scheme> {
@@ -150,8 +152,9 @@ fn moved(
     let (unknowns, scale) = (state.unpack(&scheme.operators.blocks, n), scale(scheme));
     let field = Field { basis: &scheme.operators.line.basis, components, u: &unknowns, scale: &scale };
     let mut moved = regrid::transfer(&from, &to, &field)?;
-    let placed = place_points(scene, &from, &old.cloud, &to, &moved, policy, scheme)?;
-    let body = Body { mesh, cloud: placed.cloud.clone(), material };
+    let placed = place_points(scene, &from, old, &to, &moved, policy, scheme)?;
+    let (cloud, virtual_points) = (placed.cloud.clone(), placed.virtual_points.clone());
+    let body = Body { mesh, cloud, virtual_points, deficient: vec![], material };
     let after = build_scheme(scene, &body)?;
     regrid::curl_free(&after.operators, components, &moved.same, &mut moved.u);
     let new = State::pack(&after.operators.blocks, n, components, &moved.u);

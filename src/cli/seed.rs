@@ -29,10 +29,11 @@ pub struct Args {
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     let scene = Scene::load(&args.scene.scene, &args.scene.sets)?;
-    let body = Files { mesh: args.mesh.clone(), cloud: None }.body(&scene)?;
+    let mesh = Files { mesh: args.mesh.clone(), cloud: None }.mesh(&scene)?;
+    let cloud = scene.build_cloud(&mesh)?;
     keep(&args.out, args.force)?;
-    cloud_file::write_cloud(&args.out, &body.cloud, &body.mesh)?;
-    report(&body.cloud);
+    cloud_file::write_cloud(&args.out, &cloud, &mesh)?;
+    report(&cloud);
     say(format!("written to {}", args.out.display()));
     Ok(())
 }

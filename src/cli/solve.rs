@@ -65,10 +65,10 @@ pub fn all(scene_args: &SceneArgs, files: &Files, operators: Option<&Path>, run:
     let scheme = pipeline::scheme(&scene, &body, operators, kernel);
     let state = scene.initial_state(&body.mesh, &scheme)?;
     say(&scene.title);
-    preprocess::report(&scene, &body, &scheme, &state, settings)?;
+    let certificates = preprocess::report(&scene, &body, &scheme, &state, settings)?;
     say(origin);
     folder.clear_results()?;
-    pipeline::write_input(&scene, files, &body, &folder)?;
+    pipeline::write_input(&scene, files, &body, &folder, certificates, (&scheme, &state))?;
     let built = Built { body, scheme, files: GridFiles::default() };
     Solve { scene: &scene, folder: &folder, kernel, settings }.run(built, state)
 }

@@ -30,7 +30,7 @@ pub struct Args {
     /// file 1,2]
     #[arg(long, value_name = "R,..", value_delimiter = ',', allow_negative_numbers = true)]
     refine: Vec<f64>,
-    /// Layouts of the points of ADER-DGMPM: paper, midpoints, gauss, jitter [default: that of the scene]
+    /// Layouts of the points of ADER-DGMPM, such as paper, midpoints, random, rotated [default: that of the scene]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     layouts: Vec<String>,
     /// Degree and refinement of the run that errors are taken against where no exact solution is known [default: one

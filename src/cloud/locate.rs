@@ -1,8 +1,10 @@
-//! Finds the cell of any point: a bounding volume hierarchy over the cells, then the inverse map.
+//! Finds the cell of any point: a walk from the cell of the point before, else a bounding volume hierarchy over the cells;
+//! then the inverse map.
 
 use rayon::prelude::*;
 
 use super::Cloud;
+use super::walk::Walk;
 use crate::mesh::{Mesh, map};
 
 /// Points this far outside of a cell, in parent coordinates, still belong to it: corners and edges are
@@ -108,15 +110,22 @@ pub struct Locator {
     entries: Vec<Entry>,
     /// A balanced binary tree in depth-first order, each node over a run of entries that its children halve.
     nodes: Vec<Node>,
+    walk: Walk,
 }
 
 impl Locator {
     /// A locator of a mesh with convex cells ([`Mesh::checked`]).
     pub fn new(mesh: &Mesh) -> Self {
         let mut entries: Vec<_> = (0..mesh.cells.len()).map(|cell| Entry::new(mesh.corners(cell), cell)).collect();
+        let walk = Walk::new(mesh, |cell| entries[cell].tolerance);
         let mut nodes = Vec::new();
         build(&mut entries, &mut nodes);
-        Self { entries, nodes }
+        Self { entries, nodes, walk }
+    }
+
+    /// [`Locator::find`] from a cell that may be near: the same bits, sooner.
+    pub fn find_from(&self, near: usize, x: [f64; 2]) -> Option<(usize, [f64; 2])> {
+        self.walk.find(near, x).or_else(|| self.find(x))
     }
 
     /// The cell of a point and its parent coordinates in [0, 1]^2, or `None` outside of the mesh.
@@ -207,25 +216,47 @@ pub(crate) fn on_lattice(xi: f64) -> f64 {
     (xi * STEPS).round() / STEPS
 }
 
+/// Points that a thread locates one after the other, each from the cell of the one before.
+const RUN: usize = 1024;
+
+/// Where each point lies, as [`Locator::find`] says.
+pub fn find_all(locator: &Locator, points: &[[f64; 2]]) -> Vec<Option<(usize, [f64; 2])>> {
+    let run = |points: &[[f64; 2]]| {
+        let mut near = usize::MAX;
+        let found = points.iter().map(|&x| {
+            let found = locator.find_from(near, x);
+            near = found.map_or(near, |(cell, _)| cell);
+            found
+        });
+        found.collect::<Vec<_>>()
+    };
+    points.par_chunks(RUN).flat_map_iter(run).collect()
+}
+
+/// The cloud of located points, and for each of its points the number of the given one. Points of a cell keep their order.
+pub fn sorted(cells: usize, found: impl Iterator<Item = Option<(usize, [f64; 2])>>) -> (Cloud, Vec<usize>) {
+    let located = found.enumerate().filter_map(|(index, found)| found.map(|(cell, xi)| (cell, index, xi)));
+    let mut located: Vec<_> = located.collect();
+    located.sort_unstable_by_key(|&(cell, index, _)| (cell, index));
+    let mut first = vec![0; cells + 1];
+    located.iter().for_each(|(cell, _, _)| first[cell + 1] += 1);
+    for cell in 0..cells {
+        first[cell + 1] += first[cell];
+    }
+    let cloud = Cloud { first, xi: located.iter().map(|&(_, _, xi)| xi.map(on_lattice)).collect() };
+    (cloud, located.iter().map(|&(_, index, _)| index).collect())
+}
+
 /// The cloud of points given by their positions X, in m, and for each point of the cloud its index in `points`.
 /// Points of a cell keep their order; parent coordinates are exact to 2^-41 (5e-13).
 pub fn from_points(mesh: &Mesh, locator: &Locator, points: &[[f64; 2]]) -> Result<(Cloud, Vec<usize>), Outside> {
-    let found: Vec<_> = points.par_iter().map(|&x| locator.find(x)).collect();
+    let found = find_all(locator, points);
     if let Some(first) = found.iter().position(Option::is_none) {
         let count = found.iter().filter(|f| f.is_none()).count();
         let extent = mesh.nodes.iter().fold(Extent::EMPTY, |extent, &x| extent.join(x, x));
         return Err(Outside { count, first, at: points[first], extent: [extent.low, extent.high] });
     }
-    let mut located: Vec<_> =
-        found.into_iter().flatten().enumerate().map(|(index, (cell, xi))| (cell, index, xi)).collect();
-    located.sort_unstable_by_key(|&(cell, index, _)| (cell, index));
-    let mut first = vec![0; mesh.cells.len() + 1];
-    located.iter().for_each(|(cell, _, _)| first[cell + 1] += 1);
-    for cell in 0..mesh.cells.len() {
-        first[cell + 1] += first[cell];
-    }
-    let cloud = Cloud { first, xi: located.iter().map(|&(_, _, xi)| xi.map(on_lattice)).collect() };
-    Ok((cloud, located.iter().map(|&(_, index, _)| index).collect()))
+    Ok(sorted(mesh.cells.len(), found.into_iter()))
 }
 
 #[cfg(test)]
@@ -317,6 +348,43 @@ mod tests {
         assert_eq!(locator.find([3.0 + 1e-11, 1.5]), None);
         assert_eq!(locator.find([f64::NAN, 0.0]), None);
         assert_eq!(locator.find([f64::INFINITY, 0.0]), None);
+    }
+
+    /// A rectangle without the cells of its middle: not convex, with a hole.
+    fn frame() -> Mesh {
+        let mut mesh = distorted();
+        let keep = |cell: usize| !((2..5).contains(&(cell % 7)) && (1..4).contains(&(cell / 7)));
+        let kept: Vec<usize> = (0..35).filter(|&cell| keep(cell)).collect();
+        mesh.cells = kept.iter().map(|&cell| mesh.cells[cell]).collect();
+        (mesh.cell_group, mesh.original) = (vec![0; kept.len()], vec![]);
+        mesh.edges.clear();
+        mesh
+    }
+
+    #[test]
+    fn the_walk_finds_what_the_hierarchy_finds_to_the_bit_from_any_cell() {
+        for mesh in [distorted(), frame(), rectangle([7.0, 5.0], [7, 5]).unwrap()] {
+            let locator = Locator::new(&mesh);
+            let random = seed(Layout::Random { seed: 5 }, 20, 1);
+            // Some lie outside, and in the hole.
+            let mut points: Vec<_> = random.xi.iter().map(|x| [7.4 * x[0] - 0.2, 5.4 * x[1] - 0.2]).collect();
+            for cell in 0..mesh.cells.len() {
+                let edge = [[0.0, 0.0], [1.0, 0.37], [0.37, 1.0], [0.5, 0.0], [1.0, 1.0], [1e-11, 0.5]];
+                points.extend(edge.map(|xi| map::position(&mesh.corners(cell), xi)));
+            }
+            points.extend([[f64::NAN, 1.0], [f64::INFINITY, 1.0], [1e300, -1e300]]);
+            let mut walked = 0;
+            for (k, &x) in points.iter().enumerate() {
+                let expected = locator.find(x);
+                for from in [0, (k * 7) % mesh.cells.len(), mesh.cells.len() - 1, usize::MAX] {
+                    walked += usize::from(locator.walk.find(from, x).is_some());
+                    assert_eq!(locator.find_from(from, x), expected, "{x:?} from {from}");
+                }
+            }
+            // Not by falling back to the hierarchy: of 400 points from three cells each most are walked to, or, around the
+            // hole, nearly half (484).
+            assert!(walked > 450, "{walked}");
+        }
     }
 
     #[test]

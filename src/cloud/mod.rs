@@ -1,8 +1,11 @@
 //! The cloud of material points, sorted by cell.
 
+pub mod body;
 pub mod locate;
 pub mod seed;
+mod walk;
 
+pub use body::Pattern;
 pub use locate::{Locator, Outside, from_points};
 pub use seed::{Layout, default_layout, seed, seed_by};
 
@@ -16,6 +19,16 @@ pub struct Cloud {
 }
 
 impl Cloud {
+    /// The cloud of the cells 0..`cells`, where `push` appends the points of a cell.
+    pub fn of_cells(cells: usize, mut push: impl FnMut(usize, &mut Vec<[f64; 2]>)) -> Self {
+        let mut cloud = Self { first: vec![0], xi: Vec::new() };
+        for cell in 0..cells {
+            push(cell, &mut cloud.xi);
+            cloud.first.push(cloud.xi.len());
+        }
+        cloud
+    }
+
     /// Parent coordinates of the points of a cell.
     pub fn of(&self, cell: usize) -> &[[f64; 2]] {
         &self.xi[self.first[cell]..self.first[cell + 1]]

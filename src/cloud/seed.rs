@@ -1,6 +1,7 @@
-//! Seeding: the same lattice of k x k points in every cell, or a jittered one.
+//! Seeding cell by cell: the same lattice of k x k points in every cell, or random points in their parent squares.
 //!
-//! Points of a cell are ordered with xi1 slowest: point `p = i k + j` has the i-th fraction in xi1, the j-th in xi2.
+//! Points of a lattice are ordered with xi1 slowest: point `p = i k + j` has the i-th fraction in xi1, the j-th in xi2.
+//! Each cell has its own stream of random numbers, so that they do not depend on the order of cells.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -20,44 +21,88 @@ pub enum Layout {
     Gauss,
     /// Midpoints, each moved in each direction by a random part of its share of the cell.
     Jitter {
-        /// Seed of the generator; each cell has its own stream, so that numbers do not depend on the order of cells.
+        /// Seed of the generator.
         seed: u64,
         /// Largest move in units of 1/k, 0 to 1/2 (beyond, points are held inside the cell).
         amount: f64,
+    },
+    /// Anywhere in the parent square, each point on its own.
+    Random {
+        /// Seed of the generator.
+        seed: u64,
+    },
+    /// Gathered around random centres.
+    Cluster {
+        /// Seed of the generator.
+        seed: u64,
+        /// Centres in a cell; its points belong to them in turn.
+        clusters: usize,
+        /// Largest distance from the centre in each parent direction (points are held inside the cell).
+        radius: f64,
     },
 }
 
 impl Layout {
     /// The `amount` of a jitter that does not name one.
     pub const JITTER: f64 = 0.2;
+    /// The `clusters` of a layout that does not name them.
+    pub const CLUSTERS: usize = 4;
+    /// The `radius` of a cluster that does not name one.
+    pub const RADIUS: f64 = 0.2;
 
-    /// The k fractions per direction, ascending (those of the lattice before it is moved, for a jitter).
+    /// The k fractions per direction, ascending (those of the lattice before it is moved, for a jitter; midpoints for
+    /// layouts that come from none).
     pub fn fractions(self, k: usize) -> Vec<f64> {
         let n = k as f64;
         match self {
             Layout::Paper if k == 2 => vec![0.25, 0.75],
             Layout::Paper if k == 3 => vec![0.25, 0.5, 0.75],
             Layout::Paper => (1..=k).map(|i| i as f64 / (n + 1.0)).collect(),
-            Layout::Midpoints | Layout::Jitter { .. } => (0..k).map(|i| (i as f64 + 0.5) / n).collect(),
+            Layout::Midpoints | Layout::Jitter { .. } | Layout::Random { .. } | Layout::Cluster { .. } => {
+                (0..k).map(|i| (i as f64 + 0.5) / n).collect()
+            }
             Layout::Gauss => gauss_legendre(k).0,
         }
     }
 
-    /// The k x k points of a cell.
+    /// The k^2 points of a cell.
     pub fn points(self, k: usize, cell: usize) -> Vec<[f64; 2]> {
         let at = self.fractions(k);
         let mut points: Vec<[f64; 2]> = at.iter().flat_map(|&a| at.iter().map(move |&b| [a, b])).collect();
-        if let Layout::Jitter { seed, amount } = self {
-            let mut random = ChaCha8Rng::seed_from_u64(seed);
-            random.set_stream(cell as u64);
-            for x in points.iter_mut().flatten() {
-                // 53 random bits: uniform in [0, 1), then in [-1, 1).
-                let uniform = (random.next_u64() >> 11) as f64 * 2f64.powi(-53);
-                *x = (*x + amount / k as f64 * (2.0 * uniform - 1.0)).clamp(0.0, 1.0);
+        match self {
+            Layout::Paper | Layout::Midpoints | Layout::Gauss => {}
+            Layout::Jitter { seed, amount } => {
+                let mut random = stream(seed, cell);
+                for x in points.iter_mut().flatten() {
+                    *x = (*x + amount / k as f64 * (2.0 * uniform(&mut random) - 1.0)).clamp(0.0, 1.0);
+                }
+            }
+            Layout::Random { seed } => {
+                let mut random = stream(seed, cell);
+                points.iter_mut().flatten().for_each(|x| *x = uniform(&mut random));
+            }
+            Layout::Cluster { seed, clusters, radius } => {
+                let mut random = stream(seed, cell);
+                let centres: Vec<_> = (0..clusters).map(|_| [0; 2].map(|_| uniform(&mut random))).collect();
+                for (point, centre) in points.iter_mut().zip(centres.iter().cycle()) {
+                    *point = centre.map(|x| (x + radius * (2.0 * uniform(&mut random) - 1.0)).clamp(0.0, 1.0));
+                }
             }
         }
         points
     }
+}
+
+/// The random numbers of a cell.
+pub(super) fn stream(seed: u64, cell: usize) -> ChaCha8Rng {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(cell as u64);
+    random
+}
+
+/// 53 random bits: uniform in [0, 1).
+pub(super) fn uniform(random: &mut ChaCha8Rng) -> f64 {
+    (random.next_u64() >> 11) as f64 * 2f64.powi(-53)
 }
 
 /// The layout of a degree that names none: the paper's up to N = 2; midpoints above, where the paper's amplifies too
@@ -73,13 +118,10 @@ pub fn seed(layout: Layout, per_direction: usize, cells: usize) -> Cloud {
 
 /// Points in the cells 0..`cells`, where `choice` gives each cell its layout and number per direction.
 pub fn seed_by(cells: usize, choice: impl Fn(usize) -> (Layout, usize)) -> Cloud {
-    let mut cloud = Cloud { first: vec![0], xi: Vec::new() };
-    for cell in 0..cells {
+    Cloud::of_cells(cells, |cell, xi| {
         let (layout, per_direction) = choice(cell);
-        cloud.xi.extend(layout.points(per_direction, cell));
-        cloud.first.push(cloud.xi.len());
-    }
-    cloud
+        xi.extend(layout.points(per_direction, cell));
+    })
 }
 
 #[cfg(test)]
@@ -144,6 +186,28 @@ mod tests {
         assert_eq!(few.of(4), many.of(4));
         assert_ne!(few.of(4), few.of(3));
         assert_ne!(few.of(4), seed(jitter(2), 2, 5).of(4));
+    }
+
+    #[test]
+    fn random_points_and_clusters_depend_on_seed_and_cell_and_lie_where_they_should() {
+        let random = |seed| Layout::Random { seed };
+        let cloud = seed(random(1), 3, 400);
+        assert_eq!(cloud.of(7), random(1).points(3, 7));
+        assert_ne!(cloud.of(7), random(2).points(3, 7));
+        assert_ne!(cloud.of(7), cloud.of(8));
+        let mean = cloud.xi.iter().flatten().sum::<f64>() / (2 * cloud.len()) as f64;
+        // Uniform in (0, 1): five standard deviations of the mean of 7200 samples are .017.
+        assert!((mean - 0.5).abs() < 0.017 && cloud.xi.iter().flatten().all(|x| (0.0..1.0).contains(x)));
+        let cluster = Layout::Cluster { seed: 1, clusters: 2, radius: 0.05 };
+        for cell in 0..50 {
+            let points = cluster.points(4, cell);
+            // Every second point belongs to the same centre: none is farther from another than twice the radius.
+            for (p, x) in points.iter().enumerate().skip(2) {
+                let other = points[p % 2];
+                assert!((0..2).all(|k| (x[k] - other[k]).abs() <= 0.1 + 1e-15), "{cell} {p}");
+            }
+            assert!(points.iter().flatten().all(|x| (0.0..=1.0).contains(x)) && points.len() == 16);
+        }
     }
 
     #[test]

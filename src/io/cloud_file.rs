@@ -1,58 +1,125 @@
 //! `cloud.h5`: the material points, with the fingerprint of the mesh that they were seeded on.
 //!
 //! Arrays: `first` (cells + 1); `xi` (points, 2), parent coordinates; `positions` (points, 2), X in m, for people who
-//! read the file (it is not read back). Attribute `mesh`: the fingerprint.
+//! read the file (it is not read back). Attribute `mesh`: the fingerprint. Version 2 may also hold `virtual` (points),
+//! 1 where a point stands on a Gauss node because its cell cannot carry the degree; fields at the points, `field_<name>`
+//! (points, components); and the certificates of the cells (`cell_..`).
 
 use std::path::Path;
 
-use super::grid::bilinear;
+use super::certificates::{self, Columns};
+use super::grid::{Field, Kind, bilinear};
 use super::hash;
 use super::store::{ArrayRef, Format, Store, write_arrays};
 use crate::cloud::Cloud;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
+use crate::operators::Certificate;
 
 /// The format of `cloud.h5`.
-pub const FORMAT: Format = Format { name: "dgmpm cloud", version: 1, remedy: "write it again by `dgmpm seed`" };
+pub const FORMAT: Format = Format { name: "dgmpm cloud", version: 2, remedy: "write it again by `dgmpm seed`" };
+
+/// What names of fields begin with.
+const FIELD: &str = "field_";
+
+/// What a file may hold beside the places of the points; each part is empty where it does not.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct More {
+    /// Whether each point is virtual.
+    pub virtual_points: Vec<bool>,
+    /// Fields at the points.
+    pub fields: Vec<Field>,
+    /// Certificates of the cells.
+    pub certificates: Vec<Certificate>,
+}
 
 /// Writes the cloud of a mesh.
 pub fn write_cloud(path: &Path, cloud: &Cloud, mesh: &Mesh) -> Result<()> {
-    if let Some(what) = fault(cloud).or_else(|| misfit(cloud, mesh)) {
+    write_with(path, cloud, mesh, &More::default())
+}
+
+/// Writes the cloud of a mesh, and more of it.
+pub fn write_with(path: &Path, cloud: &Cloud, mesh: &Mesh, more: &More) -> Result<()> {
+    if let Some(what) = fault(cloud).or_else(|| misfit(cloud, mesh)).or_else(|| too_few(cloud, more)) {
         return Err(Error::output(path, what));
     }
     let positions: Vec<[f64; 2]> = (0..mesh.cells.len())
         .flat_map(|c| cloud.of(c).iter().map(move |&xi| bilinear(mesh.cells[c].map(|n| mesh.nodes[n]), xi)))
         .collect();
-    let arrays = [
+    let mut arrays = vec![
         ("first", vec![cloud.first.len()], ArrayRef::Index(&cloud.first)),
         ("xi", vec![cloud.len(), 2], ArrayRef::F64(cloud.xi.as_flattened())),
         ("positions", vec![cloud.len(), 2], ArrayRef::F64(positions.as_flattened())),
     ];
+    let flags: Vec<usize> = more.virtual_points.iter().map(|&is| usize::from(is)).collect();
+    if !flags.is_empty() {
+        arrays.push(("virtual", vec![flags.len()], ArrayRef::Index(&flags)));
+    }
+    let names: Vec<String> = more.fields.iter().map(|field| format!("{FIELD}{}", field.name)).collect();
+    for (name, field) in names.iter().zip(&more.fields) {
+        arrays.push((name, vec![cloud.len(), field.kind.components()], ArrayRef::F64(&field.values)));
+    }
+    let columns = Columns::of(&more.certificates);
+    arrays.extend(columns.arrays());
     write_arrays(path, FORMAT, &[("mesh", hash::of_mesh(mesh))], &arrays)
 }
 
 /// Reads a cloud and the fingerprint of its mesh.
 pub fn read_cloud(path: &Path) -> Result<(Cloud, String)> {
     let mut store = Store::read(path, FORMAT)?;
+    Ok((read_places(&mut store)?, store.attribute("mesh")?.to_owned()))
+}
+
+fn read_places(store: &mut Store) -> Result<Cloud> {
     let xi = store.reals("xi", &[2])?;
     let cloud = Cloud { first: store.indices("first", &[])?, xi: xi.as_chunks::<2>().0.to_vec() };
     match fault(&cloud) {
         Some(what) => Err(store.error(what)),
-        None => Ok((cloud, store.attribute("mesh")?.to_owned())),
+        None => Ok(cloud),
     }
 }
 
 /// Reads a cloud that must belong to this mesh.
 pub fn read_cloud_of(path: &Path, mesh: &Mesh) -> Result<Cloud> {
-    let (cloud, seeded_on) = read_cloud(path)?;
-    let fail = |what: &str| Err(Error::at(crate::error::Place::file(path), what, FORMAT.remedy));
-    if seeded_on != hash::of_mesh(mesh) {
-        return fail("the points were seeded on another mesh");
+    Ok(read_with(path, mesh)?.0)
+}
+
+/// Reads a cloud that must belong to this mesh, and all that is known of it.
+pub fn read_with(path: &Path, mesh: &Mesh) -> Result<(Cloud, More)> {
+    let mut store = Store::read(path, FORMAT)?;
+    let cloud = read_places(&mut store)?;
+    if store.attribute("mesh")? != hash::of_mesh(mesh) {
+        return Err(store.error("the points were seeded on another mesh"));
     }
-    match misfit(&cloud, mesh) {
-        Some(what) => fail(&what),
-        None => Ok(cloud),
+    if let Some(what) = misfit(&cloud, mesh) {
+        return Err(store.error(what));
     }
+    let mut more = More { certificates: certificates::read(&mut store, mesh.cells.len())?, ..More::default() };
+    if store.names().any(|name| name == "virtual") {
+        more.virtual_points = store.indices("virtual", &[])?.into_iter().map(|flag| flag != 0).collect();
+    }
+    let names: Vec<String> = store.names().filter(|name| name.starts_with(FIELD)).map(str::to_owned).collect();
+    for name in names {
+        let kinds = [Kind::Scalar, Kind::Vector, Kind::Tensor];
+        let components = store.shape(&name)?.get(1).copied();
+        let kind = kinds.into_iter().find(|kind| Some(kind.components()) == components);
+        let kind = kind.ok_or_else(|| store.error(format!("`{name}` is neither scalar nor vector nor tensor")))?;
+        more.fields.push(Field::new(&name[FIELD.len()..], kind, store.reals(&name, &[kind.components()])?));
+    }
+    match too_few(&cloud, &more) {
+        Some(what) => Err(store.error(what)),
+        None => Ok((cloud, more)),
+    }
+}
+
+/// Whether a point has no flag or no value of a field.
+fn too_few(cloud: &Cloud, more: &More) -> Option<String> {
+    let flags = more.virtual_points.len();
+    if flags != 0 && flags != cloud.len() {
+        return Some(format!("`virtual` has {flags} entries for {} points", cloud.len()));
+    }
+    let misfit = more.fields.iter().find(|field| field.values.len() != cloud.len() * field.kind.components())?;
+    Some(format!("the field `{}` does not have a value for each of the {} points", misfit.name, cloud.len()))
 }
 
 /// What is wrong with the numbers of a cloud, if anything.

@@ -7,6 +7,7 @@
 //!
 //! A file appears under its name only when it is whole ([`pending`]); what is read is checked before it is used.
 
+mod certificates;
 pub mod cloud_file;
 pub mod csv;
 pub mod gmsh;

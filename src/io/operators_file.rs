@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::certificates::Columns;
 use super::hash::{self, Digest};
 use super::hdf5;
 use super::seal::{self, Seal};
@@ -9,17 +10,21 @@ use super::store::{ArrayRef, Format, Store, write_arrays};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::operators::stored::Flat;
-use crate::operators::{Blocks, Needs, Sampling, Stored};
+use crate::operators::{Blocks, Certificate, Needs, Sampling, Stored};
 
-/// The format of the stored matrices. Version 3: cells of a block follow each other, see [`Blocks`].
+/// The format of the stored matrices. Version 3: cells of a block follow each other, see [`Blocks`]. Version 4 adds the
+/// certificates of the cells, for people who read the file (they are not read back).
 pub const FORMAT: Format =
-    Format { name: "dgmpm operators", version: 3, remedy: "write it again by `dgmpm preprocess`" };
+    Format { name: "dgmpm operators", version: 4, remedy: "write it again by `dgmpm preprocess`" };
+
+/// The version since which matrices are the same: those of older files are built again.
+const MATRICES: u32 = 3;
 
 /// The key: a hash of mesh, pairs of periodic groups, cloud (or nodes), degree, the law of each cell, and which
 /// matrices are asked for.
 pub fn key(mesh: &Mesh, periodic: &[[usize; 2]], material: &[usize], needs: &Needs) -> String {
     let mut digest = Digest::new();
-    digest.text(FORMAT.name).count(FORMAT.version as usize).text(&hash::of_mesh(mesh)).count(needs.degree);
+    digest.text(FORMAT.name).count(MATRICES as usize).text(&hash::of_mesh(mesh)).count(needs.degree);
     digest.counts(periodic.as_flattened().iter().map(|&group| group as u64));
     digest.counts(material.iter().map(|&m| m as u64));
     match needs.sampling {
@@ -30,8 +35,8 @@ pub fn key(mesh: &Mesh, periodic: &[[usize; 2]], material: &[usize], needs: &Nee
     digest.count(usize::from(needs.curl_free)).finish()
 }
 
-/// Writes the matrices under their key.
-pub fn write(path: &Path, key: &str, stored: &Stored) -> Result<()> {
+/// Writes the matrices under their key, with the certificates of the cells.
+pub fn write(path: &Path, key: &str, stored: &Stored, certificates: &[Certificate]) -> Result<()> {
     let parts =
         [("points", stored.points.as_ref().map(Flat::of)), ("curl_free", stored.curl_free.as_ref().map(Flat::of))];
     let mut arrays = Vec::new();
@@ -43,7 +48,9 @@ pub fn write(path: &Path, key: &str, stored: &Stored) -> Result<()> {
         arrays.push((format!("{name}_shared"), flat.shared.len(), ArrayRef::F64(&flat.shared)));
         arrays.push((format!("{name}_own"), flat.own.len(), ArrayRef::F64(&flat.own)));
     }
-    let arrays: Vec<_> = arrays.iter().map(|(name, len, array)| (name.as_str(), vec![*len], *array)).collect();
+    let mut arrays: Vec<_> = arrays.iter().map(|(name, len, array)| (name.as_str(), vec![*len], *array)).collect();
+    let columns = Columns::of(certificates);
+    arrays.extend(columns.arrays());
     write_arrays(path, FORMAT, &[("key", key.to_owned())], &arrays)
 }
 
@@ -99,6 +106,7 @@ mod tests {
     use crate::cloud::{Cloud, Layout, seed};
     use crate::mesh::{links, rectangle};
     use crate::operators::Line;
+    use crate::operators::certificate::certify;
 
     struct Case {
         mesh: Mesh,
@@ -136,7 +144,7 @@ mod tests {
             let points = stored.points.as_ref().unwrap();
             assert_eq!((points.shared.len(), points.own.len()), if layout == JITTER { (0, 2) } else { (1, 0) });
             let key = key(&case.mesh, &[], &MATERIAL, &needs);
-            write(&path, &key, &stored).unwrap();
+            write(&path, &key, &stored, &[]).unwrap();
             // Every number is finite, so that equality is that of bits but for the sign of 0.
             let back = read(&path, &key, &case.blocks, &needs).unwrap().unwrap();
             assert_eq!(back, stored);
@@ -146,6 +154,21 @@ mod tests {
             };
             assert_eq!(bits(&back), bits(&stored));
         }
+    }
+
+    #[test]
+    fn certificates_stand_beside_the_matrices_for_those_who_look() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("operators.h5");
+        let case = case(Layout::Paper);
+        let needs = needs(&case.cloud);
+        let certificates = certify(&case.mesh, &Line::new(2), Sampling::Cloud(&case.cloud)).unwrap();
+        write(&path, "a", &build(&case, &needs), &certificates).unwrap();
+        let mut store = Store::read(&path, FORMAT).unwrap();
+        assert_eq!(store.indices("cell_points", &[]).unwrap(), [9; 12]);
+        // The layout of the paper on a square cell: 26.6 (design section 2).
+        assert!(store.reals("cell_face_lebesgue", &[]).unwrap().iter().all(|l| (l - 26.6).abs() < 0.01));
+        assert!(read(&path, "a", &case.blocks, &needs).unwrap().is_some());
     }
 
     #[test]
@@ -181,7 +204,7 @@ mod tests {
         let needs = needs(&case.cloud);
         let read = |key: &str| read(&path, key, &case.blocks, &needs);
         assert_eq!(read("a").unwrap(), None);
-        write(&path, "a", &build(&case, &needs)).unwrap();
+        write(&path, "a", &build(&case, &needs), &[]).unwrap();
         assert_eq!(read("b").unwrap(), None);
         assert!(read("a").unwrap().is_some() && may_replace(&path));
         let mut bytes = std::fs::read(&path).unwrap();
@@ -202,7 +225,7 @@ mod tests {
         let needs = needs(&case.cloud);
         let mut stored = build(&case, &needs);
         stored.points.as_mut().unwrap().share.pop();
-        write(&path, "a", &stored).unwrap();
+        write(&path, "a", &stored, &[]).unwrap();
         let message = read(&path, "a", &case.blocks, &needs).unwrap_err().to_string();
         assert!(message.contains("do not fit together"), "{message}");
     }

@@ -51,6 +51,19 @@ pub fn links(mesh: &Mesh) -> Result<Vec<[Link; 4]>, Error> {
     }
 }
 
+/// For each cell the cells that share its faces 0..4, whatever the groups of its edges say; none at the edge of the body and
+/// where more than two cells meet.
+pub fn neighbours(mesh: &Mesh) -> Vec<[Option<usize>; 4]> {
+    let mut out = vec![[None; 4]; mesh.cells.len()];
+    for same in sorted_faces(mesh).chunk_by(|a, b| a.nodes == b.nodes) {
+        if let [a, b] = same {
+            out[a.cell][a.face] = Some(b.cell);
+            out[b.cell][b.face] = Some(a.cell);
+        }
+    }
+    out
+}
+
 /// A face with its nodes in ascending order.
 #[derive(Clone, Copy)]
 struct Face {

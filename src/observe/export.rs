@@ -20,19 +20,34 @@ pub fn grid(mesh: &Mesh, solution: &Solution, fields: &[Field]) -> HighOrderGrid
 }
 
 /// The material points as vertices, with their fields and the number of their cell.
-pub fn points(mesh: &Mesh, cloud: &Cloud, solution: &Solution, fields: &[Field]) -> PointCloud {
-    let at: Vec<_> = (0..mesh.cells.len())
-        .flat_map(|cell| cloud.of(cell).iter().map(move |&xi| (cell, solution.at(cell, xi))))
-        .collect();
+///
+/// `virtual_points` says which of them stand on Gauss nodes because their cell cannot carry the degree; empty: none.
+pub fn points(
+    mesh: &Mesh,
+    cloud: &Cloud,
+    virtual_points: &[bool],
+    solution: &Solution,
+    fields: &[Field],
+) -> PointCloud {
     let place = |cell: usize| {
         let corners = mesh.corners(cell);
         cloud.of(cell).iter().map(move |&xi| map::position(&corners, xi))
     };
     let positions = (0..mesh.cells.len()).flat_map(place).map(|[x, y]| [x, y, 0.0]).collect();
-    let mut all: Vec<grid::Field> = fields.iter().map(|&field| values(field, solution, &at)).collect();
-    let cells = at.iter().map(|(cell, _)| mesh.number(*cell) as f64).collect();
-    all.push(grid::Field::new("cell", Kind::Scalar, cells));
+    let mut all = point_fields(mesh, cloud, solution, fields);
+    let cells = (0..mesh.cells.len()).flat_map(|cell| cloud.of(cell).iter().map(move |_| mesh.number(cell) as f64));
+    all.push(grid::Field::new("cell", Kind::Scalar, cells.collect()));
+    let is_virtual = |p: usize| f64::from(u8::from(virtual_points.get(p) == Some(&true)));
+    all.push(grid::Field::new("virtual", Kind::Scalar, (0..cloud.len()).map(is_virtual).collect()));
     PointCloud { points: positions, fields: all }
+}
+
+/// Fields at the material points.
+pub fn point_fields(mesh: &Mesh, cloud: &Cloud, solution: &Solution, fields: &[Field]) -> Vec<grid::Field> {
+    let at: Vec<_> = (0..mesh.cells.len())
+        .flat_map(|cell| cloud.of(cell).iter().map(move |&xi| (cell, solution.at(cell, xi))))
+        .collect();
+    fields.iter().map(|&field| values(field, solution, &at)).collect()
 }
 
 fn values(field: Field, solution: &Solution, points: &[(usize, super::Point)]) -> grid::Field {
@@ -41,7 +56,8 @@ fn values(field: Field, solution: &Solution, points: &[(usize, super::Point)]) -
     grid::Field::new(field.name(), field.kind(), values)
 }
 
-/// What each cell can carry, as cell fields: the certificate, the number in the mesh file, and the law.
+/// What each cell can carry, as cell fields: the certificate (class 0 lattice, 1 dense, 2 deficient, 3 nodes; dt in s at the
+/// initial state), the number in the mesh file, and the law.
 pub fn cell_fields(mesh: &Mesh, certificates: &[Certificate], material: &[usize]) -> Vec<grid::Field> {
     let scalar = |name: &str, value: &dyn Fn(usize) -> f64| {
         grid::Field::new(name, Kind::Scalar, (0..mesh.cells.len()).map(value).collect())
@@ -54,5 +70,7 @@ pub fn cell_fields(mesh: &Mesh, certificates: &[Certificate], material: &[usize]
         scalar("condition", &|cell| certificates[cell].condition),
         scalar("face_lebesgue", &|cell| certificates[cell].lebesgue),
         scalar("h", &|cell| certificates[cell].h),
+        scalar("class", &|cell| certificates[cell].class as usize as f64),
+        scalar("dt", &|cell| certificates[cell].dt),
     ]
 }

@@ -1,14 +1,30 @@
 //! What each cell can carry, known before the first step.
 
-use super::{Line, Sampling};
+use super::{Line, PointMatrices, Sampling};
 use crate::basis::MovingLeastSquares;
 use crate::error::Error;
 use crate::mesh::{Mesh, map};
 use rayon::prelude::*;
 
-/// The certificate of a cell.
+names! {
+    /// How the points of a cell are treated.
+    Class {
+        /// A lattice: products of 1D matrices.
+        Lattice = "lattice",
+        /// Any other cloud: dense matrices.
+        Dense = "dense",
+        /// Points that cannot carry Q_N: virtual ones stand on the Gauss nodes in their place, see [`super::carry`].
+        Deficient = "deficient",
+        /// The Gauss nodes themselves: methods without points.
+        Nodes = "nodes",
+    }
+}
+
+/// The certificate of a cell: what the scheme samples on, and how well.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certificate {
+    /// How its points are treated.
+    pub class: Class,
     /// N_p.
     pub points: usize,
     /// Numerical rank of the fit; (N+1)^2 where the cell carries Q_N.
@@ -17,29 +33,53 @@ pub struct Certificate {
     pub condition: f64,
     /// Face Lebesgue constant: max over face points of sum_p |chi_p|; infinite where the rank is too small.
     pub lebesgue: f64,
+    /// The same over the Gauss nodes. (Points near the faces alone do not see functions that vanish there.)
+    pub inside: f64,
     /// h_e, m: the time step is proportional to it.
     pub h: f64,
+    /// The largest stable step of the cell at the initial state, s; NaN where no state is known.
+    pub dt: f64,
 }
 
-/// Certificates of all cells, in the order of the mesh.
+/// Certificates of all cells, in the order of the mesh, without dt.
 ///
 /// # Errors
 /// As for the fit itself.
 pub fn certify(mesh: &Mesh, line: &Line, sampling: Sampling) -> Result<Vec<Certificate>, Error> {
     let nodes = line.nodes();
     let (class, examples) = sampling.classes(&nodes, mesh.cells.len());
-    let fit = |&cell: &usize| quality(line, sampling.of(&nodes, cell));
+    let fit = |&cell: &usize| {
+        let found = of_points(line, sampling.of(&nodes, cell))?;
+        let class = if let Sampling::Nodes = sampling { Class::Nodes } else { found.class };
+        Ok(Certificate { class, ..found })
+    };
     let fits = examples.par_iter().map(fit).collect::<Result<Vec<_>, Error>>()?;
     Ok((0..mesh.cells.len())
         .map(|cell| Certificate { h: map::h_e(&mesh.corners(cell)), ..fits[class[cell]] })
         .collect())
 }
 
-fn quality(line: &Line, xi: &[[f64; 2]]) -> Result<Certificate, Error> {
+/// The certificate of a cell with these points, but for its shape (h = 0, dt = NaN).
+///
+/// # Errors
+/// As for the fit itself.
+pub fn of_points(line: &Line, xi: &[[f64; 2]]) -> Result<Certificate, Error> {
     let fit = MovingLeastSquares::new(line.m - 1, xi)?;
     let along = &line.basis.nodes;
     let faces = along.iter().flat_map(|&s| [[0.0, s], [1.0, s], [s, 0.0], [s, 1.0]]);
-    let sums = faces.map(|x| fit.values(x).iter().map(|chi| chi.abs()).sum::<f64>());
-    let lebesgue = if fit.condition.is_finite() { sums.fold(0.0, f64::max) } else { f64::INFINITY };
-    Ok(Certificate { points: xi.len(), rank: fit.rank, condition: fit.condition, lebesgue, h: 0.0 })
+    let sum = |x: [f64; 2]| fit.values(x).iter().map(|chi| chi.abs()).sum::<f64>();
+    let largest = |at: &mut dyn Iterator<Item = [f64; 2]>| match fit.condition.is_finite() {
+        true => at.map(sum).fold(0.0, f64::max),
+        false => f64::INFINITY,
+    };
+    Ok(Certificate {
+        class: if PointMatrices::is_lattice(line, xi) { Class::Lattice } else { Class::Dense },
+        points: xi.len(),
+        rank: fit.rank,
+        condition: fit.condition,
+        lebesgue: largest(&mut faces.into_iter()),
+        inside: largest(&mut line.nodes().into_iter()),
+        h: 0.0,
+        dt: f64::NAN,
+    })
 }

@@ -1,8 +1,10 @@
 //! The stored matrices of the method, built once per mesh, cloud and degree, shared by congruent cells.
 
 pub mod blocks;
+pub mod carry;
 pub mod certificate;
 pub mod curl_free;
+pub mod from_points;
 pub mod geometry;
 pub mod matrix;
 mod order;
@@ -11,8 +13,10 @@ pub mod points;
 pub mod stored;
 
 pub use blocks::{Blocks, Neighbour, Side};
-pub use certificate::Certificate;
+pub use carry::{Carried, Limits, carry};
+pub use certificate::{Certificate, Class};
 pub use curl_free::CurlFree;
+pub use from_points::from_points;
 pub use geometry::Geometry;
 pub use matrix::{Matrix, Pool, Share};
 pub use point_matrices::PointMatrices;

@@ -120,11 +120,15 @@ impl PointMatrices<f64> {
     /// # Errors
     /// A cloud that cannot carry Q_N, with the remedy.
     pub fn at_points(line: &Line, xi: &[[f64; 2]], number: u64) -> Result<Self, Error> {
-        let factors = lattice(xi).and_then(|[x, y]| Some([Factor::new(line, &x)?, Factor::new(line, &y)?]));
-        match factors {
+        match factors(line, xi) {
             Some(factors) => Ok(PointMatrices::Lattice(factors)),
             None => dense(line, xi, number),
         }
+    }
+
+    /// Whether the points of a cell are a lattice that carries Q_N.
+    pub fn is_lattice(line: &Line, xi: &[[f64; 2]]) -> bool {
+        factors(line, xi).is_some()
     }
 
     /// The same as dense matrices.
@@ -197,6 +201,12 @@ impl Factor<f64> {
             slope: Matrix::new(k, k, x.iter().flat_map(|&x| fit.derivatives(x)).collect()),
         })
     }
+}
+
+/// The factors of a lattice that carries Q_N; none for any other cloud.
+fn factors(line: &Line, xi: &[[f64; 2]]) -> Option<[Factor<f64>; 2]> {
+    let [x, y] = lattice(xi)?;
+    Some([Factor::new(line, &x)?, Factor::new(line, &y)?])
 }
 
 /// The coordinates x_i, y_j of K x K points `p = i K + j` at (x_i, y_j); none for any other cloud.

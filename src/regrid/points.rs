@@ -6,7 +6,7 @@ use crate::cloud::{Cloud, Locator, locate::on_lattice};
 use crate::error::Error;
 use crate::mesh::{Mesh, map};
 use crate::operators::certificate::{Certificate, certify};
-use crate::operators::{Line, Sampling};
+use crate::operators::{Limits, Line, Sampling};
 use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
@@ -33,6 +33,8 @@ pub struct Placed {
     pub source: Vec<usize>,
     /// Whether it is that point itself.
     pub kept: Vec<bool>,
+    /// Whether it is virtual, on a Gauss node of a cell that could not carry its points; empty: none is.
+    pub virtual_points: Vec<bool>,
     /// Old points that lie outside of the new mesh, and are gone.
     pub outside: usize,
 }
@@ -48,14 +50,13 @@ pub struct Demand<'a> {
     pub fresh: &'a Cloud,
     /// Whether the method samples at the points; else any points will do.
     pub samples: bool,
+    /// What points may amplify before Gauss nodes take their place.
+    pub limits: &'a Limits,
+    /// Which of the old points are virtual, on Gauss nodes; empty: none.
+    pub virtual_points: &'a [bool],
     /// Whether a law has internal variables, whose sources are then looked for.
     pub histories: bool,
 }
-
-/// Face Lebesgue constants that a cell may have, N = 0..6 (design section 8; beyond N = 4 by the same factor 2.5).
-const LEBESGUE: [f64; 7] = [10.0, 10.0, 30.0, 60.0, 150.0, 375.0, 940.0];
-/// Condition number of the fit that a cell may have: eleven digits are left.
-const CONDITION: f64 = 1e5;
 
 /// A point of a new cell.
 #[derive(Debug, Clone, Copy)]
@@ -63,6 +64,8 @@ struct Seat {
     xi: [f64; 2],
     /// The old point that it is.
     old: Option<usize>,
+    /// Whether it stands on a Gauss node because the cell cannot carry its points.
+    is_virtual: bool,
 }
 
 /// Places the points of `cloud` in the new grid; `same` names the old cell that a new one equals.
@@ -85,18 +88,24 @@ pub fn place(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>], dema
             enrich(&mut seats, &changed, new, demand)?;
         }
         if demand.policy != Policy::Layout {
-            let poor = poor(&seats, &changed, new, demand.line)?;
+            let poor = poor(&seats, &changed, new, demand)?;
             for cell in poor {
-                seats[cell] = demand.line.nodes().into_iter().map(|xi| Seat { xi, old: None }).collect();
+                seats[cell] =
+                    demand.line.nodes().into_iter().map(|xi| Seat { xi, old: None, is_virtual: true }).collect();
             }
         }
     }
     let source = if demand.histories { sources(old, cloud, new, &seats)? } else { vec![] };
-    let mut out = Placed { cloud: Cloud { first: vec![0], xi: vec![] }, source, kept: vec![], outside };
+    let mut out = Placed { cloud: Cloud { first: vec![0], xi: vec![] }, source, outside, ..Placed::default() };
+    let was_virtual = |seat: &Seat| seat.old.is_some_and(|old| demand.virtual_points.get(old) == Some(&true));
     for seats in &seats {
+        out.virtual_points.extend(seats.iter().map(|seat| seat.is_virtual || was_virtual(seat)));
         out.kept.extend(seats.iter().map(|seat| seat.old.is_some()));
         out.cloud.xi.extend(seats.iter().map(|seat| seat.xi));
         out.cloud.first.push(out.cloud.xi.len());
+    }
+    if !out.virtual_points.contains(&true) {
+        out.virtual_points.clear();
     }
     Ok(out)
 }
@@ -105,7 +114,7 @@ pub fn place(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>], dema
 fn of_layout(cloud: &Cloud, same: &[Option<usize>], fresh: &Cloud) -> Vec<Vec<Seat>> {
     let of = |(cell, same): (usize, &Option<usize>)| match same {
         Some(twin) => own(cloud, *twin),
-        None => fresh.of(cell).iter().map(|&xi| Seat { xi, old: None }).collect(),
+        None => fresh.of(cell).iter().map(|&xi| Seat { xi, old: None, is_virtual: false }).collect(),
     };
     same.iter().enumerate().map(of).collect()
 }
@@ -113,7 +122,7 @@ fn of_layout(cloud: &Cloud, same: &[Option<usize>], fresh: &Cloud) -> Vec<Vec<Se
 /// The points of a cell that stays, with their parent coordinates to the bit.
 fn own(cloud: &Cloud, cell: usize) -> Vec<Seat> {
     let numbered = cloud.of(cell).iter().zip(cloud.first[cell]..);
-    numbered.map(|(&xi, point)| Seat { xi, old: Some(point) }).collect()
+    numbered.map(|(&xi, point)| Seat { xi, old: Some(point), is_virtual: false }).collect()
 }
 
 /// All points where they are in X; how many lie outside of the new mesh.
@@ -139,13 +148,13 @@ fn stay(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>]) -> (Vec<V
     };
     let found: Vec<_> = moving.par_iter().map(find).collect();
     for ((cell, xi), point) in found.iter().flatten() {
-        seats[*cell].push(Seat { xi: xi.map(on_lattice), old: Some(*point) });
+        seats[*cell].push(Seat { xi: xi.map(on_lattice), old: Some(*point), is_virtual: false });
     }
     (seats, found.iter().filter(|found| found.is_none()).count())
 }
 
 /// Changed cells whose points cannot carry Q_N.
-fn poor(seats: &[Vec<Seat>], changed: &[bool], new: &Grid, line: &Line) -> Result<Vec<usize>, Error> {
+fn poor(seats: &[Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand) -> Result<Vec<usize>, Error> {
     // Of the others one point is enough to be no work.
     let look = |cell: usize| if changed[cell] { &seats[cell][..] } else { &[] };
     let mut cloud = Cloud { first: vec![0], xi: vec![] };
@@ -153,28 +162,25 @@ fn poor(seats: &[Vec<Seat>], changed: &[bool], new: &Grid, line: &Line) -> Resul
         cloud.xi.extend(look(cell).iter().map(|seat| seat.xi));
         cloud.first.push(cloud.xi.len());
     }
-    let certificates = certify(new.mesh, line, Sampling::Cloud(&cloud))?;
-    let cannot = |cell: &usize| changed[*cell] && !carries(&certificates[*cell], line.m);
+    let certificates = certify(new.mesh, demand.line, Sampling::Cloud(&cloud))?;
+    let cannot = |cell: &usize| changed[*cell] && !carries(&certificates[*cell], demand);
     Ok((0..seats.len()).filter(cannot).collect())
 }
 
-fn carries(certificate: &Certificate, m: usize) -> bool {
-    certificate.points >= m * m
-        && certificate.rank == m * m
-        && certificate.lebesgue <= LEBESGUE[(m - 1).min(LEBESGUE.len() - 1)]
-        && certificate.condition <= CONDITION
+fn carries(certificate: &Certificate, demand: &Demand) -> bool {
+    demand.limits.cause(certificate, demand.line.m * demand.line.m).is_none()
 }
 
 /// Adds points of the layout where there are too few; where there are too many, those nearest to the Gauss nodes stay (they
 /// amplify least at the faces).
 fn enrich(seats: &mut [Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand) -> Result<(), Error> {
     let gap = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
-    for cell in poor(seats, changed, new, demand.line)? {
+    for cell in poor(seats, changed, new, demand)? {
         // Half of the spacing of the layout: where a point is that near, another would only be its double.
         let near = 0.5 / (demand.fresh.of(cell).len() as f64).sqrt();
         for &xi in demand.fresh.of(cell) {
             if seats[cell].iter().all(|seat| gap(seat.xi, xi) > near) {
-                seats[cell].push(Seat { xi, old: None });
+                seats[cell].push(Seat { xi, old: None, is_virtual: false });
             }
         }
     }
@@ -194,7 +200,7 @@ fn enrich(seats: &mut [Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand
         let cloud = Cloud { first: vec![0, thinned.len()], xi: thinned.iter().map(|seat| seat.xi).collect() };
         let corners = new.mesh.corners(cell);
         let one = Mesh { nodes: corners.to_vec(), cells: vec![[0, 1, 2, 3]], ..Mesh::default() };
-        if carries(&certify(&one, demand.line, Sampling::Cloud(&cloud))?[0], demand.line.m) {
+        if carries(&certify(&one, demand.line, Sampling::Cloud(&cloud))?[0], demand) {
             seats[cell] = thinned;
         }
     }
@@ -267,7 +273,16 @@ mod tests {
         let same = same_cells(&old, &new);
         let fresh = seed(Layout::Paper, 3, case.new.cells.len());
         let line = Line::new(2);
-        let demand = Demand { line: &line, policy, fresh: &fresh, samples: true, histories: true };
+        let (limits, virtual_points) = (Limits::of_degree(2), &[][..]);
+        let demand = Demand {
+            line: &line,
+            policy,
+            fresh: &fresh,
+            samples: true,
+            limits: &limits,
+            virtual_points,
+            histories: true,
+        };
         (place(&old, &case.cloud, &new, &same, &demand).unwrap(), same)
     }
 

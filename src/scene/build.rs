@@ -1,14 +1,13 @@
 //! Where names become types: from a scene to mesh, cloud, operators, scheme, initial state and observers.
 
 use super::{
-    Boundary, Condition, Curl, Expression, LAWS, Layout, Mesh as Source, Method, Output, Scene, Step, Sweeps, What,
-    When,
+    Boundary, Condition, Curl, Expression, LAWS, Mesh as Source, Method, Output, Scene, Step, Sweeps, What, When,
 };
 use crate::boundary::{self, Data};
-use crate::cloud::{self, Cloud, seed};
-use crate::error::{Error, Place, Result};
+use crate::cloud::Cloud;
+use crate::error::Result;
 use crate::exact::ExactForce;
-use crate::io::{cloud_file, gmsh, mesh_file, points, store};
+use crate::io::{gmsh, mesh_file, store};
 use crate::lane::Kernel;
 use crate::material::Law;
 use crate::mesh::{self, Link, Mesh};
@@ -90,26 +89,6 @@ impl Scene {
         mesh.cell_group.iter().map(|&group| numbers[group]).collect()
     }
 
-    /// The material points.
-    ///
-    /// # Errors
-    /// A cloud file that does not fit the mesh.
-    pub fn build_cloud(&self, mesh: &Mesh) -> Result<Cloud> {
-        if let Layout::File(path) = &self.cloud.layout {
-            return read_cloud(&self.resolve(path), mesh);
-        }
-        let material = self.material_of_cells(mesh);
-        let choice = |cell: usize| {
-            let cloud = &self.materials[material[cell]].cloud;
-            match cloud.layout {
-                Layout::Lattice(layout) => (layout, cloud.per_direction),
-                // Only [cloud] can name a file, and it has none here.
-                Layout::File(_) => (seed::default_layout(self.scheme.degree), cloud.per_direction),
-            }
-        };
-        Ok(seed::seed_by(mesh.cells.len(), choice))
-    }
-
     /// What the method needs of the operators.
     pub fn needs<'a>(&self, cloud: &'a Cloud) -> Needs<'a> {
         let sampling = match self.scheme.method {
@@ -187,13 +166,17 @@ impl Scene {
         Box::new(BodyForce { value: pair(&source.value), material: self.materials.iter().position(named) })
     }
 
-    /// The initial state: F and p at the grid nodes from the scene's expressions, or from its exact solution.
+    /// The initial state: F and p at the grid nodes from the scene's expressions, from its exact solution, or from the
+    /// fields of its cloud.
     ///
     /// # Errors
     /// A value that is not finite, or J <= 0, with its place in the mesh.
     pub fn initial_state(&self, mesh: &Mesh, scheme: &Scheme) -> Result<State> {
         if let Some(path) = &self.initial.snapshot {
             return self.state_of_snapshot(&self.resolve(path), scheme);
+        }
+        if self.initial.from_cloud {
+            return self.state_from_cloud(mesh, scheme);
         }
         let (basis, n) = (&scheme.operators.line.basis, scheme.operators.nodes());
         let components = if self.wants_displacement() { UNKNOWNS + 2 } else { UNKNOWNS };
@@ -205,7 +188,7 @@ impl Scene {
             for a in 0..n {
                 let x = mesh::map::position(&mesh.corners(cell), basis.node_2d(a));
                 let (f, v) = match &exact {
-                    Some(exact) => (exact.deformation(x, 0.0), exact.velocity(x, 0.0)),
+                    Some(exact) => (exact.deformation(x, self.start), exact.velocity(x, self.start)),
                     None => self.initial.at(x),
                 };
                 self.check_initial(f, v, x, mesh.number(cell))?;
@@ -213,12 +196,12 @@ impl Scene {
                 u.into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
             }
         }
-        let mut state = State::pack(&scheme.operators.blocks, n, components, &cells);
+        let mut state = State { time: self.start, ..State::pack(&scheme.operators.blocks, n, components, &cells) };
         scheme.set_internal(&mut state, &scheme.virgin_internal());
         Ok(state)
     }
 
-    fn check_initial(&self, f: [f64; 4], v: [f64; 2], x: [f64; 2], cell: u64) -> Result<()> {
+    pub(super) fn check_initial(&self, f: [f64; 4], v: [f64; 2], x: [f64; 2], cell: u64) -> Result<()> {
         let at = format!("at ({}, {}) in cell {cell}", x[0], x[1]);
         if v.iter().any(|v| !v.is_finite()) {
             let what = format!("the initial velocity {at} is ({}, {})", v[0], v[1]);
@@ -372,19 +355,4 @@ fn condition(boundary: &Boundary) -> Box<dyn boundary::Boundary> {
         Condition::Traction(value) => Box::new(boundary::Traction { value: pair(value) }),
         Condition::Absorbing => Box::new(boundary::Absorbing),
     }
-}
-
-/// Reads a cloud: `.h5` as written by `dgmpm seed`, else positions from VTU or CSV.
-///
-/// # Errors
-/// A file that cannot be read; points outside of the mesh, with their numbers.
-pub fn read_cloud(path: &Path, mesh: &Mesh) -> Result<Cloud> {
-    if store::is_meant_as_store(path) {
-        return cloud_file::read_cloud_of(path, mesh);
-    }
-    let points = points::read(path)?;
-    let located = cloud::from_points(mesh, &cloud::Locator::new(mesh), &points);
-    located
-        .map(|(cloud, _)| cloud)
-        .map_err(|why| Error::at(Place::file(path), why.to_string(), "give points inside of the mesh, in m"))
 }

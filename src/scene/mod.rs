@@ -5,6 +5,7 @@
 //! and lists what exists. A scene knows neither mesh nor solver: names become types elsewhere. Units are SI.
 
 pub mod build;
+mod cloud;
 mod exact;
 mod expression;
 pub mod grids;
@@ -13,12 +14,14 @@ mod laws;
 mod names;
 mod origin;
 mod outputs;
+mod points;
 pub mod portable;
 mod read;
 mod reader;
 pub mod regrid;
 mod restart;
 mod sets;
+mod snapshot;
 mod suggest;
 
 use std::collections::BTreeMap;
@@ -30,7 +33,9 @@ use toml_edit::{Document, DocumentMut};
 use crate::cloud::seed;
 use crate::error::{Error, Place, Result};
 pub use crate::observe::Field;
+use crate::operators::Limits;
 pub use crate::riemann::Flux;
+pub use cloud::{Given, Sampled, read_points};
 pub use exact::{Exact, SOLUTIONS};
 pub use expression::{Expression, FUNCTIONS, Fault};
 pub use laws::{LAWS, Law, Parameter};
@@ -46,9 +51,11 @@ pub struct Scene {
     pub mesh: Mesh,
     /// Where the material points stand, where a material does not say otherwise.
     pub cloud: Cloud,
+    /// Beyond what the points of a cell are replaced.
+    pub limits: Limits,
     /// The materials, at least one.
     pub materials: Vec<Material>,
-    /// The state at t = 0.
+    /// The state at the start.
     pub initial: Initial,
     /// The exact solution, where one is named.
     pub exact: Option<Exact>,
@@ -60,6 +67,8 @@ pub struct Scene {
     pub curl: Curl,
     /// Method, degrees, flux, step size.
     pub scheme: Scheme,
+    /// Time of the initial state, in s; default 0.
+    pub start: f64,
     /// End time, in s.
     pub end: f64,
     /// What is recorded when.
@@ -88,9 +97,9 @@ pub enum Mesh {
 /// Where material points stand.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cloud {
-    /// The pattern in a cell.
+    /// The pattern.
     pub layout: Layout,
-    /// Points per direction k (k^2 in a cell); without meaning for a file.
+    /// Points per direction k (k^2 in a cell; in the mean, for a pattern of the body); without meaning for a file.
     pub per_direction: usize,
 }
 
@@ -98,10 +107,32 @@ pub struct Cloud {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Layout {
-    /// The same pattern in every cell.
-    Lattice(seed::Layout),
+    /// Cell by cell.
+    InCells(seed::Layout),
+    /// Through the body, without regard to its cells.
+    Body(Body),
     /// The points of a file, as written in the scene ([`Scene::resolve`] makes it a path).
     File(PathBuf),
+}
+
+/// A pattern of a whole body.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Body {
+    /// Random points that keep their distance.
+    PoissonDisk {
+        /// Seed of the generator.
+        seed: u64,
+        /// Least distance, m; none: as many points as `per_direction` says.
+        spacing: Option<f64>,
+    },
+    /// A lattice turned against the grid.
+    Rotated {
+        /// In degrees.
+        angle: f64,
+        /// Distance of neighbours, m; none: as many points as `per_direction` says.
+        spacing: Option<f64>,
+    },
 }
 
 /// A material on a group of cells.
@@ -119,9 +150,11 @@ pub struct Material {
     pub cloud: Cloud,
 }
 
-/// The state at t = 0; its expressions depend on x and y only.
+/// The state at the start; its expressions depend on x and y only.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Initial {
+    /// Whether it comes from the fields of the cloud file; the expressions are then without meaning.
+    pub from_cloud: bool,
     /// v, in m/s; default 0.
     pub velocity: [Expression; 2],
     /// F11, F12, F21, F22; default the identity.

@@ -30,11 +30,17 @@ impl Scene {
     }
 }
 
-/// Reads every `[[output]]` of a body of these laws.
-pub(super) fn outputs(tables: Vec<Reader>, laws: &[Law]) -> Result<Vec<Output>> {
+/// Reads every `[[output]]` of a body of these laws, in a run that begins at `start`.
+pub(super) fn outputs(tables: Vec<Reader>, laws: &[Law], start: f64) -> Result<Vec<Output>> {
     let mut outputs: Vec<Output> = Vec::with_capacity(tables.len());
     for mut table in tables {
         let output = output(&mut table, laws)?;
+        if let When::At(times) = &output.when
+            && let Some(early) = times.iter().position(|time| *time < start)
+        {
+            let what = format!("{} s lies before the start of the run, {start:e} s", times[early]);
+            return Err(table.wrong_entry("at", early, what, "give times from [time] start on"));
+        }
         let ledger = |output: &Output| matches!(output.what, What::Ledger { .. });
         if ledger(&output) && outputs.iter().any(ledger) {
             return Err(table.wrong("kind", "two [[output]] of kind \"ledger\"", "one ledger records all: remove one"));

@@ -1,11 +1,9 @@
 //! The text of a scene for its run folder, so that the folder can be moved and run again.
 
+use super::points::KEYS;
 use super::regrid::NewMesh;
 use super::{Layout, Mesh, Scene};
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, value};
-
-/// Keys of `[[material]]` that say where its points stand.
-const POINTS: [&str; 4] = ["layout", "per_direction", "seed", "amount"];
 
 impl Scene {
     /// The text as run, in which the mesh is the file `mesh.h5` beside it if it came from a file, and so the cloud
@@ -21,7 +19,7 @@ impl Scene {
         }
         if cloud || matches!(self.cloud.layout, Layout::File(_)) {
             in_table(&mut document, "cloud", |table| {
-                ["per_direction", "seed", "amount"].iter().for_each(|key| drop(table.remove(key)));
+                KEYS.iter().filter(|key| **key != "layout").for_each(|key| drop(table.remove(key)));
                 put(table, "layout", "file");
                 put(table, "path", "cloud.h5");
             });
@@ -90,10 +88,10 @@ fn put(table: &mut dyn toml_edit::TableLike, key: &str, text: &str) {
 fn remove_points_of_materials(document: &mut DocumentMut) {
     let Some(materials) = document.get_mut("material") else { return };
     if let Some(tables) = materials.as_array_of_tables_mut() {
-        tables.iter_mut().for_each(|table| POINTS.iter().for_each(|key| drop(table.remove(key))));
+        tables.iter_mut().for_each(|table| KEYS.iter().for_each(|key| drop(table.remove(key))));
     } else if let Some(list) = materials.as_array_mut() {
         let tables = list.iter_mut().filter_map(|entry| entry.as_inline_table_mut());
-        tables.for_each(|table: &mut InlineTable| POINTS.iter().for_each(|key| drop(table.remove(key))));
+        tables.for_each(|table: &mut InlineTable| KEYS.iter().for_each(|key| drop(table.remove(key))));
     }
 }
 

@@ -5,12 +5,11 @@ use std::path::PathBuf;
 use toml_edit::Document;
 
 use super::origin::Origin;
-use super::reader::{Check, POSITIVE, Reader};
+use super::reader::{Check, FINITE, POSITIVE, Reader};
 use super::{
     Boundary, Cloud, Condition, Curl, Expression, Flux, Initial, LAWS, Layout, Material, Mesh, Method, Scene, Scheme,
     Source, Step, Sweeps,
 };
-use crate::cloud::seed;
 use crate::error::Result;
 
 /// Reads a whole scene.
@@ -35,24 +34,26 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     let need = |key: &'static str, remedy: &str| root.missing(key, remedy);
     let mesh = mesh(mesh_table.as_mut().ok_or_else(|| need("mesh", "add [mesh] with file = \"name.msh\""))?)?;
     let scheme = scheme(scheme_table.as_mut().ok_or_else(|| need("scheme", "add [scheme] with method and degree"))?)?;
-    let cloud = cloud(cloud_table.as_mut(), scheme.degree)?;
+    let (cloud, limits) = super::points::cloud(cloud_table.as_mut(), scheme.degree)?;
     if material_tables.is_empty() {
         return Err(need("material", "add [[material]] with law, density and the law's parameters"));
     }
-    let materials = materials(&mut material_tables, &cloud)?;
-    let end = end(time_table.as_mut().ok_or_else(|| need("time", "add [time] with end, in s"))?)?;
+    let materials = materials(&mut material_tables, &cloud, scheme.degree)?;
+    let (start, end) = time(time_table.as_mut().ok_or_else(|| need("time", "add [time] with end, in s"))?)?;
     let scene = Scene {
         title: title.unwrap_or_else(|| origin.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),
         mesh,
+        initial: initial(initial_table.as_mut(), &cloud)?,
         cloud,
-        initial: initial(initial_table.as_mut())?,
+        limits,
         exact: super::exact::exact(exact_table.as_mut(), initial_table.is_none())?,
         boundaries: boundaries(boundary_tables)?,
         sources: source_tables.into_iter().map(source).collect::<Result<_>>()?,
         curl: curl(curl_table.as_mut(), scheme.degree)?,
         scheme,
+        start,
         end,
-        outputs: super::outputs::outputs(output_tables, &super::build::laws(&materials))?,
+        outputs: super::outputs::outputs(output_tables, &super::build::laws(&materials), start)?,
         materials,
         regrids: super::regrid::regrids(regrid_tables)?,
         origin: Origin::default(),
@@ -119,66 +120,11 @@ fn scheme(table: &mut Reader) -> Result<Scheme> {
     Ok(Scheme { method, degree, time_degree, flux, step, sweeps })
 }
 
-#[derive(Clone, Copy)]
-enum Pattern {
-    Paper,
-    Midpoints,
-    Gauss,
-    Jitter,
-    File,
-}
-
-const PATTERNS: [(&str, Pattern); 5] = [
-    ("paper", Pattern::Paper),
-    ("midpoints", Pattern::Midpoints),
-    ("gauss", Pattern::Gauss),
-    ("jitter", Pattern::Jitter),
-    ("file", Pattern::File),
-];
-
-const AMOUNT: Check = Check { range: "from 0 to 0.5 (of the spacing)", holds: |a| (0.0..=0.5).contains(&a) };
-
-fn cloud(table: Option<&mut Reader>, degree: usize) -> Result<Cloud> {
-    let layout = Layout::Lattice(seed::default_layout(degree));
-    let default = Cloud { layout, per_direction: degree + 1 };
-    let Some(table) = table else { return Ok(default) };
-    let pattern = table.choice("layout", &PATTERNS, &[])?;
-    let path = match pattern {
-        Some(Pattern::File) => {
-            let path = table.text("path")?;
-            Some(path.ok_or_else(|| table.missing("path", "the file of the points, for instance \"cloud.vtu\""))?)
-        }
-        _ => None,
-    };
-    let cloud = points(table, pattern, path, default)?;
-    table.finish()?;
-    Ok(cloud)
-}
-
-/// The keys that [cloud] and [[material]] share.
-fn points(table: &mut Reader, pattern: Option<Pattern>, path: Option<String>, default: Cloud) -> Result<Cloud> {
-    if let Some(path) = path {
-        return Ok(Cloud { layout: Layout::File(PathBuf::from(path)), ..default });
-    }
-    let per_direction = table.integer("per_direction", 1..=30)?.unwrap_or(default.per_direction);
-    let lattice = match pattern {
-        None | Some(Pattern::File) => return Ok(Cloud { per_direction, ..default }),
-        Some(Pattern::Paper) => seed::Layout::Paper,
-        Some(Pattern::Midpoints) => seed::Layout::Midpoints,
-        Some(Pattern::Gauss) => seed::Layout::Gauss,
-        Some(Pattern::Jitter) => seed::Layout::Jitter {
-            seed: table.integer("seed", 0..=usize::MAX)?.unwrap_or(1) as u64,
-            amount: table.number("amount", AMOUNT)?.unwrap_or(seed::Layout::JITTER),
-        },
-    };
-    Ok(Cloud { layout: Layout::Lattice(lattice), per_direction })
-}
-
-fn materials(tables: &mut [Reader], cloud: &Cloud) -> Result<Vec<Material>> {
+fn materials(tables: &mut [Reader], cloud: &Cloud, degree: usize) -> Result<Vec<Material>> {
     let several = tables.len() > 1;
     let mut materials: Vec<Material> = Vec::with_capacity(tables.len());
     for table in tables {
-        let material = material(table, cloud)?;
+        let material = material(table, cloud, degree)?;
         if several && material.group.is_none() {
             return Err(table.missing("group", "with several materials each names its group of cells"));
         }
@@ -192,7 +138,7 @@ fn materials(tables: &mut [Reader], cloud: &Cloud) -> Result<Vec<Material>> {
     Ok(materials)
 }
 
-fn material(table: &mut Reader, cloud: &Cloud) -> Result<Material> {
+fn material(table: &mut Reader, cloud: &Cloud, degree: usize) -> Result<Material> {
     let group = table.text("group")?;
     let laws: Vec<(&str, usize)> = LAWS.iter().enumerate().map(|(i, law)| (law.name, i)).collect();
     let names: Vec<String> = laws.iter().map(|(name, _)| format!("\"{name}\"")).collect();
@@ -204,16 +150,7 @@ fn material(table: &mut Reader, cloud: &Cloud) -> Result<Material> {
     for parameter in law.parameters {
         given.push((parameter, table.number(parameter.name, parameter.check)?));
     }
-    let pattern = table.choice("layout", &PATTERNS[..4], &[])?;
-    if matches!(cloud.layout, Layout::File(_)) && (pattern.is_some() || table.has("per_direction")) {
-        let key = if pattern.is_some() { "layout" } else { "per_direction" };
-        return Err(table.wrong(
-            key,
-            "the points come from the file of [cloud]",
-            "remove this key, or change [cloud] layout",
-        ));
-    }
-    let cloud = points(table, pattern, None, cloud.clone())?;
+    let cloud = super::points::of_material(table, cloud, degree)?;
     table.finish()?;
     let density = density.ok_or_else(|| table.missing("density", "the density at t = 0, in kg/m^3"))?;
     let mut parameters = std::collections::BTreeMap::new();
@@ -225,9 +162,10 @@ fn material(table: &mut Reader, cloud: &Cloud) -> Result<Material> {
     Ok(Material { group, law: law.name.to_owned(), density, parameters, cloud })
 }
 
-fn initial(table: Option<&mut Reader>) -> Result<Initial> {
+fn initial(table: Option<&mut Reader>, cloud: &Cloud) -> Result<Initial> {
     let number = Expression::number;
     let mut initial = Initial {
+        from_cloud: false,
         velocity: [number(0.0), number(0.0)],
         deformation: [number(1.0), number(0.0), number(0.0), number(1.0)],
         snapshot: None,
@@ -240,6 +178,16 @@ fn initial(table: Option<&mut Reader>) -> Result<Initial> {
         }
         table.finish()?;
         return Ok(Initial { snapshot: Some(PathBuf::from(path)), ..initial });
+    }
+    initial.from_cloud = table.choice("from", &[("cloud", true)], &[])?.unwrap_or(false);
+    if initial.from_cloud {
+        table.of_kind("cloud");
+        if !matches!(cloud.layout, Layout::File(_)) {
+            let remedy = "give [cloud] layout = \"file\" and path, such as the points_*.vtu of an export";
+            return Err(table.wrong("from", "the points of this scene come from no file", remedy));
+        }
+        table.finish()?;
+        return Ok(initial);
     }
     if let Some(velocity) = table.expressions("velocity")? {
         at_start(table, "velocity", &velocity)?;
@@ -387,8 +335,14 @@ fn curl(table: Option<&mut Reader>, degree: usize) -> Result<Curl> {
     Ok(curl)
 }
 
-fn end(table: &mut Reader) -> Result<f64> {
+fn time(table: &mut Reader) -> Result<(f64, f64)> {
+    let start = table.number("start", FINITE)?.unwrap_or(0.0);
     let end = table.number("end", POSITIVE)?;
     table.finish()?;
-    end.ok_or_else(|| table.missing("end", "the end time, in s"))
+    let end = end.ok_or_else(|| table.missing("end", "the end time, in s"))?;
+    if end <= start {
+        let what = format!("`end` is {end}, and the run starts at {start}");
+        return Err(table.wrong("end", what, "give an end after the start"));
+    }
+    Ok((start, end))
 }

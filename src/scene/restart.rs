@@ -1,45 +1,77 @@
-//! The state of a snapshot as the initial state of a run.
+//! A start from material points alone: F, v and internal variables of a cloud file, on whatever grid.
 
-use super::Scene;
+use super::{Field, Given, Scene};
 use crate::error::Result;
-use crate::io::snapshot::Snapshot;
+use crate::io::grid;
+use crate::mesh::{Mesh, map};
+use crate::observe::Solution;
+use crate::operators::from_points;
 use crate::state::{State, UNKNOWNS};
 use crate::step::Scheme;
-use std::path::Path;
 
 impl Scene {
-    /// The state of a snapshot, with its time and step.
-    ///
-    /// # Errors
-    /// A snapshot of another grid, degree, law or time.
-    pub(super) fn state_of_snapshot(&self, path: &Path, scheme: &Scheme) -> Result<State> {
-        let snapshot = Snapshot::read(path)?;
-        let (cells, n) = (scheme.operators.blocks.slot.len(), scheme.operators.nodes());
-        let fail = |what: String, remedy: &str| self.error("initial.snapshot", what, remedy);
-        if snapshot.cells() != cells || snapshot.degree != scheme.operators.degree {
-            let (given, degree) = (snapshot.cells(), snapshot.degree);
-            let what = format!(
-                "the snapshot has {given} cells of degree {degree}, the scene {cells} of {}",
-                scheme.operators.degree
-            );
-            return Err(fail(what, "give the mesh of that run, or bring it over by `dgmpm regrid`"));
-        }
-        if snapshot.time >= self.end {
-            let what = format!("the snapshot is at {:e} s, and the run ends at {:e} s", snapshot.time, self.end);
-            return Err(fail(what, "give a later time.end"));
-        }
+    /// P2G of the fields of the cloud file by chi (18), see [`from_points`].
+    pub(super) fn state_from_cloud(&self, mesh: &Mesh, scheme: &Scheme) -> Result<State> {
+        let given = self.given_points(mesh)?;
         let components = if self.wants_displacement() { UNKNOWNS + 2 } else { UNKNOWNS };
-        if components > UNKNOWNS && snapshot.displacement.is_empty() {
-            let what = "an output asks for the displacement, which the snapshot lacks".to_owned();
-            return Err(fail(what, "leave out the field `displacement` and the balance of the ledger"));
+        let values = self.unknowns_of_points(mesh, scheme, &given, components)?;
+        let (line, n) = (&scheme.operators.line, scheme.operators.nodes());
+        let cells = from_points(mesh, line, &given.cloud, &self.limits, &values, components)?;
+        let material = self.material_of_cells(mesh);
+        for (cell, values) in cells.chunks(components * n).enumerate() {
+            let density = scheme.laws[material[cell]].density();
+            for (a, xi) in line.nodes().into_iter().enumerate() {
+                let u = |k: usize| values[k * n + a];
+                let (f, v) = ([0, 1, 2, 3].map(u), [4, 5].map(|k| u(k) / density));
+                self.check_initial(f, v, map::position(&mesh.corners(cell), xi), mesh.number(cell))?;
+            }
         }
-        let state = State::pack(&scheme.operators.blocks, n, components, &snapshot.unknowns(components));
-        let mut state = State { time: snapshot.time, step: snapshot.step, ..state };
-        if snapshot.internal.len() != scheme.virgin_internal().len() {
-            let what = "the snapshot has the internal variables of other laws or points".to_owned();
-            return Err(fail(what, "give the materials and the cloud of that run"));
+        Ok(State { time: self.start, ..State::pack(&scheme.operators.blocks, n, components, &cells) })
+    }
+
+    /// U, and where it is asked for the displacement, at the given points: `[point][component]`.
+    fn unknowns_of_points(&self, mesh: &Mesh, scheme: &Scheme, given: &Given, components: usize) -> Result<Vec<f64>> {
+        let deformation = self.field_of(given, Field::Deformation)?;
+        let velocity = self.field_of(given, Field::Velocity)?;
+        // Without the field the displacement counts from the start, as it does from expressions.
+        let displacement = self.field_of(given, Field::Displacement).ok();
+        let material = self.material_of_cells(mesh);
+        let mut values = Vec::with_capacity(given.cloud.len() * components);
+        for (cell, &law) in material.iter().enumerate() {
+            let density = scheme.laws[law].density();
+            for p in given.cloud.first[cell]..given.cloud.first[cell + 1] {
+                let (f, v) = (&deformation[9 * p..9 * p + 9], &velocity[3 * p..3 * p + 3]);
+                values.extend([f[0], f[1], f[3], f[4], density * v[0], density * v[1]]);
+                if components > UNKNOWNS {
+                    let u = displacement.map_or([0.0; 2], |u| [u[3 * p], u[3 * p + 1]]);
+                    values.extend(u);
+                }
+            }
         }
-        scheme.set_internal(&mut state, &snapshot.internal);
-        Ok(state)
+        Ok(values)
+    }
+
+    /// A field of the cloud file with its components in space.
+    fn field_of<'a>(&self, given: &'a Given, field: Field) -> Result<&'a [f64]> {
+        let name = field.name();
+        let fits = |other: &&grid::Field| other.name == name && other.kind == field.kind();
+        match given.fields.iter().find(fits) {
+            Some(found) => Ok(&found.values),
+            None => {
+                let known: Vec<&str> = given.fields.iter().map(|field| field.name.as_str()).collect();
+                let there = if known.is_empty() { "no field at all".to_owned() } else { known.join(", ") };
+                let what =
+                    format!("the cloud file has no field `{name}` with {} components", field.kind().components());
+                let remedy = format!("it has {there}; a start needs velocity and deformation, as exports have them");
+                Err(self.error("initial.from", what, remedy))
+            }
+        }
+    }
+
+    /// What a cloud file needs for a start from it.
+    pub fn fields_of_points(&self, solution: &Solution) -> Vec<Field> {
+        let mut fields = vec![Field::Velocity, Field::Deformation];
+        fields.extend(solution.has_displacement().then_some(Field::Displacement));
+        fields
     }
 }

@@ -41,7 +41,7 @@ fn defaults() {
     let scene = parse(MINIMAL, &[]).unwrap();
     assert_eq!((scene.title.as_str(), scene.name().as_str()), ("case", "case"));
     assert_eq!(scene.mesh, Mesh::Rectangle { size: [3.0, 1.0], cells: [30, 10] });
-    assert_eq!(scene.cloud, Cloud { layout: Layout::Lattice(seed::Layout::Paper), per_direction: 3 });
+    assert_eq!(scene.cloud, Cloud { layout: Layout::InCells(seed::Layout::Paper), per_direction: 3 });
     assert_eq!(scene.materials[0].cloud, scene.cloud);
     assert_eq!(scene.materials[0].parameters["young"], 2e11);
     assert_eq!(scene.initial.deformation.each_ref().map(|f| f.constant().unwrap()), [1.0, 0.0, 0.0, 1.0]);
@@ -58,7 +58,7 @@ fn defaults() {
     assert_eq!(scene.scheme, scheme);
     assert!(scene.outputs.is_empty() && scene.sources.is_empty());
     let high = parse(MINIMAL, &["scheme.degree=4"]).unwrap();
-    assert_eq!(high.cloud, Cloud { layout: Layout::Lattice(seed::Layout::Midpoints), per_direction: 5 });
+    assert_eq!(high.cloud, Cloud { layout: Layout::InCells(seed::Layout::Midpoints), per_direction: 5 });
     assert_eq!((high.curl, high.scheme.time_degree), (Curl::Lcf { alpha: 6.0 }, 4));
 }
 
@@ -138,7 +138,7 @@ fn sets_replace_rivals_and_grow_lists() {
     let scene = parse(MINIMAL, &sets).unwrap();
     assert_eq!(scene.outputs[1].when, When::EverySteps(5));
     let scene = parse(MINIMAL, &["curl.control=off", "cloud={layout=\"gauss\"}"]).unwrap();
-    assert_eq!((scene.curl, scene.cloud.layout), (Curl::Off, Layout::Lattice(seed::Layout::Gauss)));
+    assert_eq!((scene.curl, scene.cloud.layout), (Curl::Off, Layout::InCells(seed::Layout::Gauss)));
     let scene = parse(MINIMAL, &["boundary.1={group=\"right\", kind=\"traction\", value=[0, 1]}"]).unwrap();
     assert!(matches!(scene.boundaries[1].condition, Condition::Traction(_)));
     assert_eq!(parse(&scene.to_toml(), &[]).unwrap().boundaries, scene.boundaries);
@@ -148,7 +148,7 @@ fn sets_replace_rivals_and_grow_lists() {
     assert_eq!(parse(&scene.to_toml(), &[]).unwrap().boundaries, scene.boundaries);
     let with_table = format!("{MINIMAL}[cloud]\nlayout = \"paper\" # where\n[curl]\ncontrol = \"lcf\"\n");
     let scene = parse(&with_table, &["cloud={layout=\"gauss\"}", "curl.alpha=5"]).unwrap();
-    assert_eq!((scene.curl, scene.cloud.layout), (Curl::Lcf { alpha: 5.0 }, Layout::Lattice(seed::Layout::Gauss)));
+    assert_eq!((scene.curl, scene.cloud.layout), (Curl::Lcf { alpha: 5.0 }, Layout::InCells(seed::Layout::Gauss)));
 }
 
 #[test]
@@ -225,10 +225,10 @@ fn errors_of_later_checks_have_places_too() {
 fn layouts_per_material() {
     let text = MINIMAL.replace("density = 7800", "density = 7800\nlayout = \"jitter\"\nseed = 7\nper_direction = 4");
     let scene = parse(&text, &[]).unwrap();
-    assert_eq!(scene.cloud, Cloud { layout: Layout::Lattice(seed::Layout::Paper), per_direction: 3 });
+    assert_eq!(scene.cloud, Cloud { layout: Layout::InCells(seed::Layout::Paper), per_direction: 3 });
     assert_eq!(
         scene.materials[0].cloud,
-        Cloud { layout: Layout::Lattice(seed::Layout::Jitter { seed: 7, amount: 0.2 }), per_direction: 4 }
+        Cloud { layout: Layout::InCells(seed::Layout::Jitter { seed: 7, amount: 0.2 }), per_direction: 4 }
     );
     let file = parse(MINIMAL, &["cloud={layout=\"file\", path=\"points.vtu\"}"]).unwrap();
     assert_eq!(file.cloud_path(), Some(PathBuf::from("folder/points.vtu")));

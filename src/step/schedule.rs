@@ -3,7 +3,7 @@
 use super::balance::Sums;
 use super::tiles::{self, Event, Plan};
 use super::{Scheme, Scratch, Stage, Survey, Work, begin, finish, flux, volume, with_scratch};
-use crate::lane::F8;
+use crate::lane::{self, F8};
 use crate::state::State;
 use rayon::iter::Either;
 use rayon::prelude::*;
@@ -56,6 +56,9 @@ impl Tiles {
     }
 }
 
+/// So many blocks ahead memory is asked for.
+pub(super) const AHEAD: usize = 2;
+
 /// A tile under way.
 struct Pass<'a> {
     scheme: &'a Scheme,
@@ -87,6 +90,9 @@ impl Pass<'_> {
         let Self { scheme, stages, state, tile, .. } = self;
         let (block, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
         let blocks = scheme.operators.blocks.len();
+        if stage.number == 0 && block + AHEAD < blocks {
+            scheme.ask_for(state, block + AHEAD);
+        }
         tile.slots[stage.number * blocks + block] = slot as u32;
         let stride = state.components * scheme.operators.nodes();
         let rates = &mut tile.rates[event.rates as usize * stages.len() * stride..][..stages.len() * stride];
@@ -172,6 +178,18 @@ impl Scheme {
                 Pass { scheme: self, stages, state, survey, tile, next, balance, others, scratch }.run();
             });
         });
+    }
+
+    /// Asks for what the first stage of a block will read.
+    #[inline]
+    fn ask_for(&self, state: &State, block: usize) {
+        let (n, geometry) = (self.operators.nodes(), &self.operators.geometry);
+        let stride = state.components * n;
+        lane::prefetch(&state.u[stride * block..stride * (block + 1)]);
+        lane::prefetch(&geometry.cofactor[4 * n * block..4 * n * (block + 1)]);
+        lane::prefetch(&geometry.inverse_mass[n * block..n * (block + 1)]);
+        lane::prefetch(&geometry.mass[n * block..n * (block + 1)]);
+        lane::prefetch(&geometry.normal[8 * block..8 * (block + 1)]);
     }
 
     /// Numbers of the traces of a block.

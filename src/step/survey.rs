@@ -2,9 +2,10 @@
 
 use super::history::recall;
 use super::predictor::{self, transfer::ToPoints};
+use super::schedule::AHEAD;
 use super::volume;
 use super::{Phase, Scheme, Scratch, Work as Memory, dense, with_scratch};
-use crate::lane::{Coefficient, F8, Lanes, Work};
+use crate::lane::{Coefficient, F8, Lanes, Work, prefetch};
 use crate::material::Material;
 use crate::operators::{Matrix, PointMatrices, Share};
 use crate::state::State;
@@ -150,6 +151,9 @@ impl Work for Block<'_> {
         let operators = &self.scheme.operators;
         let stride = self.state.components * operators.nodes();
         let u = &self.state.u[stride * self.block..stride * (self.block + 1)];
+        if let Some(later) = self.state.u.get(stride * (self.block + AHEAD)..stride * (self.block + AHEAD + 1)) {
+            prefetch(later);
+        }
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
         let n = operators.nodes();
         let internal = self.scheme.histories.of(&self.state.internal, self.block);

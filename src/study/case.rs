@@ -112,7 +112,7 @@ impl Case {
         if let scene::Mesh::File(_) = scene.mesh {
             mesh = mesh.refined(self.parts());
         }
-        let cloud = scene.build_cloud(&mesh)?;
+        let cloud = scene.sample(&mesh, scene.build_cloud(&mesh)?)?.cloud;
         let (material, needs) = (scene.material_of_cells(&mesh), scene.needs(&cloud));
         let operators = Operators::build(&mesh, &scene.links(&mesh)?, &material, &needs)?;
         let scheme = scene.build_scheme(&mesh, operators, Kernel::widest());

@@ -5,7 +5,9 @@
 //! not yet in its asymptotic range, and has finer meshes instead.
 
 mod cloud_order;
+mod clouds;
 mod meshes;
+mod points;
 mod problem;
 mod solve;
 mod table;

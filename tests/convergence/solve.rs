@@ -1,5 +1,6 @@
 //! From a problem, a mesh and a method to an error.
 
+use crate::points::Points;
 use crate::problem::Problem;
 use cpu_time::ThreadTime;
 use dgmpm::basis::TimeBasis;
@@ -25,6 +26,8 @@ pub enum Kind {
     Mpm(seed::Layout, usize),
     /// DGMPM on midpoints, with the paper's sweeps instead of the ladder.
     PaperSweeps,
+    /// DGMPM on a cloud that ignores the grid.
+    Cloud(Points),
 }
 
 pub const MIDPOINTS: Kind = Kind::Mpm(seed::Layout::Midpoints, 0);
@@ -47,6 +50,7 @@ impl std::fmt::Display for Kind {
             GAUSS => "dgmpm gauss",
             MORE => "dgmpm more points",
             Kind::Mpm(..) => "dgmpm jitter",
+            Kind::Cloud(points) => return f.pad(&format!("{points:?}")),
         };
         f.pad(name)
     }
@@ -57,16 +61,14 @@ pub fn scheme(problem: &Problem, mesh: &Mesh, kind: Kind, degree: usize, time_de
     let cloud = match kind {
         Kind::Mpm(layout, more) => seed::seed(layout, degree + 1 + more, mesh.cells.len()),
         Kind::PaperSweeps => seed::seed(seed::Layout::Midpoints, degree + 1, mesh.cells.len()),
+        Kind::Cloud(points) => points.carried(mesh, degree).cloud,
         _ => Cloud::default(),
     };
     let sampling = match kind {
         Kind::Rk => None,
         Kind::Fem => Some(Sampling::Nodes),
-        Kind::Mpm(..) | Kind::PaperSweeps => Some(Sampling::Cloud(&cloud)),
+        Kind::Mpm(..) | Kind::PaperSweeps | Kind::Cloud(_) => Some(Sampling::Cloud(&cloud)),
     };
-    let links = periodic_links(mesh, &problem.periodic).unwrap();
-    let needs = Needs { degree, sampling, curl_free: problem.alpha.is_some() };
-    let operators = Operators::build(mesh, &links, &vec![0; mesh.cells.len()], &needs).unwrap();
     let method = match kind {
         Kind::Rk => Method::RungeKutta(Tableau::of_degree(time_degree)),
         Kind::PaperSweeps => {
@@ -75,6 +77,18 @@ pub fn scheme(problem: &Problem, mesh: &Mesh, kind: Kind, degree: usize, time_de
         }
         _ => Method::ader(degree, time_degree),
     };
+    Scheme { method, ..sampled(problem, mesh, sampling, degree) }
+}
+
+/// ADER of degree N in space and time on these points.
+pub fn scheme_on(problem: &Problem, mesh: &Mesh, sampling: Sampling, degree: usize) -> Scheme {
+    sampled(problem, mesh, Some(sampling), degree)
+}
+
+fn sampled(problem: &Problem, mesh: &Mesh, sampling: Option<Sampling>, degree: usize) -> Scheme {
+    let links = periodic_links(mesh, &problem.periodic).unwrap();
+    let needs = Needs { degree, sampling, curl_free: problem.alpha.is_some() };
+    let operators = Operators::build(mesh, &links, &vec![0; mesh.cells.len()], &needs).unwrap();
     let force = problem.exact.body_force([0.0; 2], 0.0).is_some();
     let sources: Vec<Box<dyn Source>> = if force { vec![Box::new(ExactForce(problem.exact.clone()))] } else { vec![] };
     let wall = |_| Box::new(Wall { speed: None }) as Box<dyn Boundary>;
@@ -84,7 +98,7 @@ pub fn scheme(problem: &Problem, mesh: &Mesh, kind: Kind, degree: usize, time_de
         operators,
         laws: vec![problem.law.clone()],
         histories: Histories::default(),
-        method,
+        method: Method::ader(degree, degree),
         flux: Flux::Rusanov,
         boundaries,
         sources,
@@ -111,9 +125,13 @@ pub fn start(problem: &Problem, mesh: &Mesh, scheme: &Scheme) -> State {
 
 /// The state at the end; none where the run loses stability before.
 pub fn advanced(problem: &Problem, mesh: &Mesh, scheme: &Scheme) -> Option<State> {
-    let mut state = start(problem, mesh, scheme);
-    let settings =
-        Settings { end: problem.end, courant: problem.safety * cfl::limit(&scheme.method, scheme.operators.degree) };
+    advance_to(problem, mesh, scheme, None, problem.end)
+}
+
+/// The state at `end`, from another or from the exact one at t = 0.
+pub fn advance_to(problem: &Problem, mesh: &Mesh, scheme: &Scheme, from: Option<State>, end: f64) -> Option<State> {
+    let mut state = from.unwrap_or_else(|| start(problem, mesh, scheme));
+    let settings = Settings { end, courant: problem.safety * cfl::limit(&scheme.method, scheme.operators.degree) };
     let interrupt = AtomicBool::new(false);
     let mut run = Run { mesh, scheme, settings, observers: vec![], interrupt: &interrupt };
     run.advance(&mut state, &mut Report::default()).ok().map(|()| state)

@@ -1,5 +1,6 @@
 //! The program as its users have it: every command on files in a folder, what it says and what it leaves.
 
+mod clouds;
 mod common;
 mod errors;
 mod regrid;

@@ -204,16 +204,17 @@ def main():
         check(f"{kind}.pvd: by VTK", list(pyvista.PVDReader(str(export / f"{kind}.pvd")).time_values) == run.times)
     for k, step in enumerate(run.steps):
         path = series["grid"][k][1]
-        # Rank and condition of the fit, the Lebesgue constant: computed by other tests, taken as they are here.
+        # Condition of the fit, Lebesgue constant, class, dt: computed by other tests, taken as they are here.
         given = {key: np.array(v) for key, v in pyvista.read(path).cell_data.items()
-                 if key in ("condition", "face_lebesgue")}
+                 if key in ("condition", "face_lebesgue", "class", "dt")}
         certificate = {"cell": run.number.astype(float), "material": np.zeros(count), "points": per_cell,
                        "rank": np.full(count, float(len(lattice))), "h": run.h_e(), **given}
         grid = check_vtu(run, path, count, run.fields(step, grid_cell, grid_xi), certificate, args.limit)
         check(f"{path.name}: positions", error(grid.points[:, :2], bilinear(run.corners[grid_cell], grid_xi)) < 1e-15)
         grids.append(grid)
         path, cell = series["points"][k][1], run.cell_of_point
-        expected = {**run.fields(step, cell, run.xi), "cell": run.number[cell].astype(float)}
+        expected = {**run.fields(step, cell, run.xi), "cell": run.number[cell].astype(float),
+                    "virtual": np.zeros(len(cell))}
         points = check_vtu(run, path, len(run.xi), expected, {}, args.limit)
         check(f"{path.name}: positions", error(points.points[:, :2], bilinear(run.corners[cell], run.xi)) < 1e-15)
     points, quads = check_series(export, run, grids)

@@ -6,12 +6,13 @@ mod outcome;
 use super::pipeline::{self, Body};
 use super::print::say;
 use crate::error::{Error, Result};
+use crate::io::cloud_file::{self, More};
 use crate::io::csv::Table;
 use crate::io::snapshot::GridFiles;
-use crate::io::{cloud_file, hash, mesh_file, operators_file};
+use crate::io::{hash, mesh_file, operators_file};
 use crate::lane::Kernel;
 use crate::observe::{NewGrid, Schedule, View};
-use crate::operators::{Blocks, Line, Operators, Stored};
+use crate::operators::{Blocks, Limits, Line, Operators, Stored};
 use crate::regrid::points::{Demand, Placed, Policy, histories, place};
 use crate::regrid::{self, Field, Grid, Transfer};
 use crate::run::{Folder, Pause};
@@ -121,13 +122,14 @@ impl<'a> Regrids<'a> {
         let mut moved = regrid::transfer(&from, &to, &field)?;
         clock.lap(1);
         let policy = self.scene.regrids[rule].points;
-        let placed = place_points(self.scene, &from, &old.body.cloud, &to, &moved, policy, &old.scheme)?;
+        let placed = place_points(self.scene, &from, &old.body, &to, &moved, policy, &old.scheme)?;
         clock.lap(2);
         if mesh == old.body.mesh && placed.cloud == old.body.cloud {
             say(format!("regrid at step {}, t = {:.6e} s: the grid is the same", state.step, state.time));
             return Ok(None);
         }
-        let body = Body { mesh, cloud: placed.cloud.clone(), material };
+        let (cloud, virtual_points) = (placed.cloud.clone(), placed.virtual_points.clone());
+        let body = Body { mesh, cloud, virtual_points, deficient: vec![], material };
         let links = self.scene.links(&body.mesh)?;
         clock.lap(3);
         let operators = self.operators(&body, &links)?;
@@ -194,7 +196,8 @@ impl<'a> Regrids<'a> {
 /// Writes mesh and points of a grid into the folder of the run.
 fn write_grid(body: &Body, files: &GridFiles, folder: &Folder) -> Result<()> {
     mesh_file::write_mesh(&folder.root.join(&files.mesh), &body.mesh)?;
-    cloud_file::write_cloud(&folder.root.join(&files.cloud), &body.cloud, &body.mesh)
+    let more = More { virtual_points: body.virtual_points.clone(), ..More::default() };
+    cloud_file::write_with(&folder.root.join(&files.cloud), &body.cloud, &body.mesh, &more)
 }
 
 fn key_of_files(body: &Body) -> String {
@@ -232,8 +235,9 @@ pub fn internal(
         return Ok(histories(&from, &places, placed, &values, &count));
     }
     // The law is evaluated at the nodes, which are new points in cells that are new.
-    let demand =
-        Demand { line: &after.operators.line, policy: Policy::Layout, fresh: &new, samples: false, histories: true };
+    let (line, limits) = (&after.operators.line, &Limits::of_degree(after.operators.degree));
+    let (policy, fresh, virtual_points) = (Policy::Layout, &new, &[][..]);
+    let demand = Demand { line, policy, fresh, samples: false, limits, virtual_points, histories: true };
     Ok(histories(&from, &places, &place(&from, &places, &to, same, &demand)?, &values, &count))
 }
 
@@ -241,7 +245,7 @@ pub fn internal(
 pub fn place_points(
     scene: &Scene,
     from: &Grid,
-    cloud: &crate::cloud::Cloud,
+    old: &Body,
     to: &Grid,
     moved: &Transfer,
     policy: Policy,
@@ -253,8 +257,10 @@ pub fn place_points(
     };
     let samples = scene.scheme.method == Method::AderDgmpm;
     let histories = scheme.laws.iter().any(|law| !law.internal().is_empty());
-    let demand = Demand { line: &scheme.operators.line, policy, fresh: &fresh, samples, histories };
-    place(from, cloud, to, &moved.same, &demand)
+    let (limits, virtual_points) = (&scene.limits, &old.virtual_points[..]);
+    let line = &scheme.operators.line;
+    let demand = Demand { line, policy, fresh: &fresh, samples, limits, virtual_points, histories };
+    place(from, &old.cloud, to, &moved.same, &demand)
 }
 
 impl Built {

@@ -1,0 +1,117 @@
+//! What cells can carry, in words: classes, the worst cells, those with virtual points, and the refusal of `--strict`.
+
+use super::pipeline::Body;
+use super::print::row;
+use crate::error::{Error, Result};
+use crate::mesh::Mesh;
+use crate::operators::carry::{Cause, Deficient};
+use crate::operators::{Certificate, Class, Limits};
+use crate::scene::{Method, Scene};
+
+/// Cells that a list names before it only counts.
+const NAMED: usize = 3;
+
+/// Rows of the table: classes, and the worst cells where cells differ.
+pub fn rows(mesh: &Mesh, certificates: &[Certificate]) -> Vec<(String, String)> {
+    let count = |class: Class| certificates.iter().filter(|c| c.class == class).count();
+    let classes = Class::NAMES.iter().map(|&(name, class)| (count(class), name)).filter(|(count, _)| *count > 0);
+    let classes: Vec<String> = classes.map(|(count, name)| format!("{count} {name}")).collect();
+    let mut rows = vec![row("classes of cells", classes.join(", "))];
+    let mut worst = |name: &str, figure: &dyn Fn(&Certificate) -> f64, show: &dyn Fn(f64) -> String| {
+        let mut order: Vec<(f64, usize)> = certificates.iter().map(figure).zip(0..).collect();
+        order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        // Where all are alike none is worst; 1e-9 is rounding of the same shape at another place.
+        if let [first, .., last] = order[..]
+            && (first.0 - last.0).abs() > 1e-9 * first.0.abs()
+        {
+            let cells = order.iter().take(NAMED).map(|&(f, cell)| format!("{} in cell {}", show(f), mesh.number(cell)));
+            rows.push(row(name, cells.collect::<Vec<_>>().join(", ")));
+        }
+    };
+    worst("worst face Lebesgue constants", &|c| c.lebesgue, &|f| format!("{f:.2}"));
+    worst("worst conditions", &|c| c.condition, &|f| format!("{f:.1}"));
+    worst("smallest dt limits", &|c| -c.dt, &|f| format!("{:.3e} s", -f));
+    rows
+}
+
+/// The word on cells with virtual points; none where there are none.
+pub fn word(scene: &Scene, body: &Body) -> Option<String> {
+    let (all, cells) = (&body.deficient, body.mesh.cells.len());
+    if all.is_empty() {
+        return None;
+    }
+    let count = |cause: Cause| all.iter().filter(|d| d.cause == cause).count();
+    let causes = [Cause::Few, Cause::Rank, Cause::Lebesgue, Cause::Condition];
+    let causes = causes.into_iter().map(|cause| (count(cause), cause)).filter(|(count, _)| *count > 0);
+    let causes: Vec<String> = causes.map(|(count, cause)| format!("{count} {}", why(cause, &scene.limits))).collect();
+    let mut worst: Vec<&Deficient> = all.iter().collect();
+    worst.sort_by(|a, b| {
+        (a.given.rank, b.given.lebesgue).partial_cmp(&(b.given.rank, a.given.lebesgue)).unwrap_or(a.cell.cmp(&b.cell))
+    });
+    let worst: Vec<String> = worst.iter().take(NAMED).map(|d| figures(&body.mesh, d.cell, &d.given)).collect();
+    Some(format!(
+        "{} of {cells} cells cannot carry degree {} and have virtual points on their Gauss nodes: {}; worst: {}",
+        all.len(),
+        scene.scheme.degree,
+        causes.join(", "),
+        worst.join(", ")
+    ))
+}
+
+fn why(cause: Cause, limits: &Limits) -> String {
+    match cause {
+        Cause::Few => "with too few points".to_owned(),
+        Cause::Rank => "with points in bad places".to_owned(),
+        Cause::Lebesgue => format!("beyond a Lebesgue constant of {}", limits.lebesgue),
+        Cause::Condition => format!("beyond a condition of {:e}", limits.condition),
+    }
+}
+
+fn figures(mesh: &Mesh, cell: usize, c: &Certificate) -> String {
+    let (number, points) = (mesh.number(cell), if c.points == 1 { "point" } else { "points" });
+    match c.condition.is_finite() {
+        true => format!(
+            "cell {number} ({} {points}, face Lebesgue constant {:.1}, at nodes {:.1}, condition {:.2e})",
+            c.points, c.lebesgue, c.inside, c.condition
+        ),
+        false => format!("cell {number} ({} {points}, rank {})", c.points, c.rank),
+    }
+}
+
+/// Refuses cells beyond the limits, lattices too.
+///
+/// # Errors
+/// The cells with their figures, and the remedy.
+pub fn strict(scene: &Scene, body: &Body) -> Result<()> {
+    if scene.scheme.method != Method::AderDgmpm {
+        return Ok(());
+    }
+    let m = scene.scheme.degree + 1;
+    let limits = Limits { lattices: true, ..scene.limits };
+    let kept = body.certificates(scene)?.into_iter().enumerate();
+    let lattices = kept.filter(|(_, c)| c.class != Class::Deficient && limits.cause(c, m * m).is_some());
+    let mut bad: Vec<(usize, Certificate)> = body.deficient.iter().map(|d| (d.cell, d.given)).chain(lattices).collect();
+    bad.sort_by_key(|(cell, _)| *cell);
+    if bad.is_empty() {
+        return Ok(());
+    }
+    let mut cells: Vec<String> = bad.iter().take(10).map(|(cell, c)| figures(&body.mesh, *cell, c)).collect();
+    if bad.len() > cells.len() {
+        cells.push(format!("and {} more", bad.len() - cells.len()));
+    }
+    let Limits { lebesgue, condition, .. } = limits;
+    Err(Error::input(
+        format!(
+            "{} of {} cells are beyond the limits (rank {}, Lebesgue constants {lebesgue}, condition {condition:e}): {}",
+            bad.len(),
+            body.mesh.cells.len(),
+            m * m,
+            cells.join(", ")
+        ),
+        format!(
+            "put at least {m} x {m} points in general position into each cell (layout = \"midpoints\", a larger \
+             per_direction), raise [cloud] face_lebesgue or condition, or leave out --strict: cells whose points carry too \
+             little then have virtual ones"
+        ),
+    ))
+}
