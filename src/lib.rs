@@ -63,6 +63,7 @@ pub mod riemann;
 pub mod boundary;
 pub mod source;
 pub mod step;
+pub mod regrid;
 pub mod io;
 pub mod observe;
 pub mod run;

@@ -6,13 +6,13 @@ use crate::basis::Lagrange;
 use crate::cloud::Cloud;
 use crate::error::{Error, Result};
 use crate::io::grid::Field as Values;
-use crate::io::snapshot::Snapshot;
+use crate::io::snapshot::{GridFiles, Snapshot};
 use crate::io::{cloud_file, mesh_file, pvd, snapshot, vtu, xdmf};
 use crate::material::Law;
 use crate::observe::{Field, Solution, export};
 use crate::run::Folder;
 use crate::scene::Scene;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Arguments.
 #[derive(Debug, clap::Args)]
@@ -41,14 +41,21 @@ impl std::fmt::Display for Format {
 
 /// What all snapshots of a run share.
 struct Export {
-    body: Body,
+    folder: Folder,
+    scene: Scene,
     laws: Vec<Law>,
     basis: Lagrange,
+    fields: Vec<Field>,
+    out: PathBuf,
+}
+
+/// A grid of the run.
+struct Sheet {
+    files: GridFiles,
+    body: Body,
     /// Where internal variables stand.
     places: Cloud,
-    fields: Vec<Field>,
     cell_fields: Vec<Values>,
-    out: PathBuf,
 }
 
 /// Runs it.
@@ -78,38 +85,56 @@ pub fn run(args: &Args) -> Result<()> {
 impl Export {
     fn new(folder: &Folder) -> Result<Self> {
         let scene = Scene::load(&folder.scene(), &[])?;
-        let mesh = mesh_file::read_mesh(&folder.mesh())?;
-        let (cloud, more) = cloud_file::read_with(&folder.cloud(), &mesh)?;
-        scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
-        let material = scene.material_of_cells(&mesh);
+        let (laws, basis, fields) = (scene.build_laws(), Lagrange::new(scene.scheme.degree), scene.export_fields());
+        Ok(Self { folder: folder.clone(), laws, basis, fields, out: folder.export(), scene })
+    }
+
+    fn sheet(&self, files: &GridFiles) -> Result<Sheet> {
+        let mesh = mesh_file::read_mesh(&self.folder.root.join(&files.mesh))?;
+        let (cloud, more) = cloud_file::read_with(&self.folder.root.join(&files.cloud), &mesh)?;
+        self.scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
+        let material = self.scene.material_of_cells(&mesh);
         let body = Body { mesh, cloud, virtual_points: more.virtual_points, deficient: vec![], material };
         let certificates = match more.certificates {
-            // A run of an older version.
-            none if none.is_empty() => body.certificates(&scene)?,
+            // A grid that came in by a regrid, or a run of an older version.
+            none if none.is_empty() => body.certificates(&self.scene)?,
             all => all,
         };
         let cell_fields = export::cell_fields(&body.mesh, &certificates, &body.material);
-        let (laws, basis) = (scene.build_laws(), Lagrange::new(scene.scheme.degree));
-        let places = scene.places(&body.cloud);
-        Ok(Self { laws, basis, places, fields: scene.export_fields(), cell_fields, out: folder.export(), body })
+        let places = self.scene.places(&body.cloud);
+        Ok(Sheet { files: files.clone(), body, places, cell_fields })
     }
 
-    /// Reads a snapshot and hands its solution to `use_it`.
-    fn with<R>(&self, path: &Path, use_it: impl FnOnce(&Solution, f64) -> Result<R>) -> Result<R> {
-        let snapshot = Snapshot::read(path)?;
-        let same = snapshot.cells() == self.body.mesh.cells.len() && snapshot.degree + 1 == self.basis.len();
-        if !same || snapshot.internal.len() != self.internal() {
-            let what = format!("{} does not belong to the scene and mesh of this run", path.display());
-            return Err(Error::input(what, "run the scene again with --force"));
+    /// The number of internal variables of all points of a grid.
+    fn internal(&self, sheet: &Sheet) -> usize {
+        let of = |(cell, &law): (usize, &usize)| self.laws[law].internal().len() * sheet.places.of(cell).len();
+        sheet.body.material.iter().enumerate().map(of).sum()
+    }
+
+    /// Reads the snapshots, each with its own grid, and hands their solutions to `use_it`, with whether the grid is new.
+    fn each(
+        &self,
+        files: &[(usize, PathBuf)],
+        mut use_it: impl FnMut(usize, &Sheet, &Solution, f64, bool) -> Result<()>,
+    ) -> Result<()> {
+        let mut last: Option<Sheet> = None;
+        for (step, path) in files {
+            let snapshot = Snapshot::read(path)?;
+            let (sheet, is_new) = match last.take() {
+                Some(sheet) if sheet.files == snapshot.grid => (sheet, false),
+                _ => (self.sheet(&snapshot.grid)?, true),
+            };
+            let fits = snapshot.cells() == sheet.body.mesh.cells.len() && snapshot.degree + 1 == self.basis.len();
+            if !fits || snapshot.internal.len() != self.internal(&sheet) {
+                let what = format!("{} does not belong to the scene and mesh of this run", path.display());
+                return Err(Error::input(what, "run the scene again with --force"));
+            }
+            let solution =
+                Solution::of_snapshot(&snapshot, &self.basis, &self.laws, &sheet.body.material, &sheet.places);
+            use_it(*step, &sheet, &solution, snapshot.time, is_new)?;
+            last = Some(sheet);
         }
-        let Self { basis, laws, body, places, .. } = self;
-        use_it(&Solution::of_snapshot(&snapshot, basis, laws, &body.material, places), snapshot.time)
-    }
-
-    /// The number of internal variables of all points.
-    fn internal(&self) -> usize {
-        let of = |(cell, &law): (usize, &usize)| self.laws[law].internal().len() * self.places.of(cell).len();
-        self.body.material.iter().enumerate().map(of).sum()
+        Ok(())
     }
 
     /// Fields that the solution has.
@@ -120,36 +145,44 @@ impl Export {
 
     fn vtu(&self, files: &[(usize, PathBuf)]) -> Result<()> {
         let (mut grids, mut points) = (Vec::new(), Vec::new());
-        for (step, path) in files {
+        self.each(files, |step, sheet, solution, time, _| {
             let (grid_path, point_path) =
                 (self.out.join(format!("grid_{step:06}.vtu")), self.out.join(format!("points_{step:06}.vtu")));
-            let time = self.with(path, |solution, time| {
-                let fields = self.fields(solution);
-                let mut grid = export::grid(&self.body.mesh, solution, &fields);
-                grid.cell_fields = self.cell_fields.clone();
-                vtu::write_grid(&grid_path, &grid)?;
-                let Body { mesh, cloud, virtual_points, .. } = &self.body;
-                vtu::write_points(&point_path, &export::points(mesh, cloud, virtual_points, solution, &fields))?;
-                Ok(time)
-            })?;
+            let (fields, body) = (self.fields(solution), &sheet.body);
+            let mut grid = export::grid(&body.mesh, solution, &fields);
+            grid.cell_fields = sheet.cell_fields.clone();
+            vtu::write_grid(&grid_path, &grid)?;
+            vtu::write_points(
+                &point_path,
+                &export::points(&body.mesh, &body.cloud, &body.virtual_points, solution, &fields),
+            )?;
             grids.push((time, grid_path));
             points.push((time, point_path));
-        }
+            Ok(())
+        })?;
         pvd::write_series(&self.out.join("grid.pvd"), &grids)?;
         pvd::write_series(&self.out.join("points.pvd"), &points)
     }
 
+    /// The series, each time on its grid; the mesh alone is that of the start.
     fn xdmf(&self, files: &[(usize, PathBuf)]) -> Result<()> {
-        xdmf::write_mesh(&self.out.join("mesh.xdmf"), &self.body.mesh)?;
-        xdmf::write_boundary(&self.out.join("boundary.xdmf"), &self.body.mesh)?;
-        let empty = crate::io::grid::HighOrderGrid::of_mesh(&self.body.mesh, self.basis.len() - 1);
-        let mut series = xdmf::Series::create(&self.out.join("series.xdmf"), &empty)?;
-        for (_, path) in files {
-            self.with(path, |solution, time| {
-                let grid = export::grid(&self.body.mesh, solution, &self.fields(solution));
-                series.push(time, &grid.point_fields, &self.cell_fields)
-            })?;
-        }
-        series.finish()
+        let first = mesh_file::read_mesh(&self.folder.mesh())?;
+        xdmf::write_mesh(&self.out.join("mesh.xdmf"), &first)?;
+        xdmf::write_boundary(&self.out.join("boundary.xdmf"), &first)?;
+        let mut series: Option<xdmf::Series> = None;
+        self.each(files, |_, sheet, solution, time, is_new| {
+            let grid = export::grid(&sheet.body.mesh, solution, &self.fields(solution));
+            let series = match &mut series {
+                Some(series) => {
+                    if is_new {
+                        series.regrid(&grid)?;
+                    }
+                    series
+                }
+                none => none.insert(xdmf::Series::create(&self.out.join("series.xdmf"), &grid)?),
+            };
+            series.push(time, &grid.point_fields, &sheet.cell_fields)
+        })?;
+        series.map_or(Ok(()), xdmf::Series::finish)
     }
 }

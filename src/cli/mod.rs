@@ -8,6 +8,8 @@ mod pipeline;
 mod preprocess;
 mod print;
 mod progress;
+mod rebuild;
+mod regrid;
 mod run;
 mod seed;
 mod solve;
@@ -56,6 +58,8 @@ enum Command {
     Study(study::Args),
     /// Measure the speed of the step against the peaks of this machine
     Bench(bench::Args),
+    /// Bring a stopped run to another mesh
+    Regrid(regrid::Args),
     /// Write a run's snapshots for ParaView, meshio and DOLFINx
     Export(export::Args),
 }
@@ -73,6 +77,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Command::Run(args) => run::run(&args),
         Command::Study(args) => study::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Regrid(args) => regrid::run(&args),
         Command::Export(args) => export::run(&args),
     }
 }

@@ -1,7 +1,7 @@
 //! The stages of the pipeline, as commands share them: from files where they are given, else from the scene.
 
 use crate::cloud::Cloud;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::io::cloud_file::{self, More};
 use crate::io::{mesh_file, operators_file};
 use crate::lane::Kernel;
@@ -11,7 +11,8 @@ use crate::operators::carry::Deficient;
 use crate::operators::certificate::{Certificate, Class, certify};
 use crate::operators::{Blocks, Line, Operators, Sampling, Stored};
 use crate::run::Folder;
-use crate::scene::{Scene, build, read_points};
+use crate::scene::regrid::NewMesh;
+use crate::scene::{Scene, build, portable, read_points};
 use crate::state::State;
 use crate::step::{Loss, Scheme};
 use std::path::{Path, PathBuf};
@@ -159,6 +160,23 @@ pub fn write_input(
     (scheme, state): (&Scheme, &State),
 ) -> Result<()> {
     mesh_file::write_mesh(&folder.mesh(), &body.mesh)?;
+    for (rule, regrid) in scene.regrids.iter().enumerate() {
+        match &regrid.grid {
+            NewMesh::Files(files) => {
+                for (k, file) in files.iter().enumerate() {
+                    let mesh = build::read_mesh(&scene.resolve(file))?;
+                    mesh_file::write_mesh(&folder.root.join(portable::regrid_file(rule, k)), &mesh)?;
+                }
+            }
+            NewMesh::Geometry { path, .. } => {
+                copy(&scene.resolve(path), &folder.root.join(portable::geometry_file(rule)))?
+            }
+            _ => {}
+        }
+    }
+    if let Some(snapshot) = &scene.initial.snapshot {
+        copy(&scene.resolve(snapshot), &folder.root.join("initial.h5"))?;
+    }
     let fields = match scene.initial.from_cloud {
         true => {
             let solution = Solution::of_state(scheme, state, &body.material);
@@ -170,4 +188,12 @@ pub fn write_input(
     cloud_file::write_with(&folder.cloud(), &body.cloud, &body.mesh, &more)?;
     let text = scene.portable_toml(files.mesh.is_some(), files.cloud.is_some());
     crate::io::pending::write_text(&folder.scene(), &text)
+}
+
+/// Copies a file, unless it is there already.
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    if from.canonicalize().ok().is_some_and(|from| to.canonicalize().is_ok_and(|to| to == from)) {
+        return Ok(());
+    }
+    std::fs::copy(from, to).map(drop).map_err(|why| Error::output(to, why))
 }

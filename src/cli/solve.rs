@@ -1,16 +1,19 @@
 //! `dgmpm solve`: steps the conservation laws.
 
-use super::pipeline::{self, Body, Files, Store};
+use super::pipeline::{self, Files, Store};
 use super::print::{say, warn};
 use super::progress::Progress;
+use super::rebuild::{self, Built, Regrids};
 use super::summary::Outcome;
 use super::{RunArgs, SceneArgs, preprocess};
 use crate::error::{Error, Place, Result};
+use crate::io::snapshot::GridFiles;
+use crate::lane::Kernel;
 use crate::observe;
-use crate::run::{Folder, Report, Run, Settings, Stop};
+use crate::run::{End, Folder, Report, Run, Settings, Stop};
 use crate::scene::Scene;
 use crate::state::State;
-use crate::step::{Loss, Scheme};
+use crate::step::Loss;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -52,6 +55,7 @@ pub fn all(scene_args: &SceneArgs, files: &Files, operators: Option<&Path>, run:
     let settings = scene.settings()?;
     let body = files.body(&scene)?;
     scene.check_lines(&body.mesh)?;
+    scene.check_regrids()?;
     if let Some(missing) = operators.filter(|path| !path.exists()) {
         return Err(Error::at(Place::file(missing), "there is no such file", "make it by `dgmpm preprocess`"));
     }
@@ -65,67 +69,88 @@ pub fn all(scene_args: &SceneArgs, files: &Files, operators: Option<&Path>, run:
     say(origin);
     folder.clear_results()?;
     pipeline::write_input(&scene, files, &body, &folder, certificates, (&scheme, &state))?;
-    Solve { scene: &scene, body: &body, scheme: &scheme, folder: &folder }.run(state, settings)
+    let built = Built { body, scheme, files: GridFiles::default() };
+    Solve { scene: &scene, folder: &folder, kernel, settings }.run(built, state)
 }
 
 struct Solve<'a> {
     scene: &'a Scene,
-    body: &'a Body,
-    scheme: &'a Scheme,
     folder: &'a Folder,
+    kernel: Kernel,
+    settings: Settings,
 }
 
 impl Solve<'_> {
-    fn run(&self, mut state: State, settings: Settings) -> Result<()> {
+    fn run(&self, mut built: Built, mut state: State) -> Result<()> {
         // A second handler (in a test that runs twice in one process) is no reason to stop.
         let _ = ctrlc::set_handler(|| {
             if INTERRUPT.swap(true, Ordering::Relaxed) {
                 std::process::exit(KILLED);
             }
         });
-        let mut observers = self.scene.observers(&self.body.mesh, self.folder)?;
-        observers.push(Box::new(Progress::new(settings.end)));
-        let mut run = Run { mesh: &self.body.mesh, scheme: self.scheme, settings, observers, interrupt: &INTERRUPT };
         let mut report = Report::default();
-        let outcome = run.advance(&mut state, &mut report);
-        drop(run);
-        report.finish(self.scheme, &state);
-        let (status, result) = match outcome {
+        let (status, result) = match self.advance(&mut built, &mut state, &mut report) {
             Ok(()) => ("done", Ok(())),
-            Err(stop) => self.stopped(stop, &state),
+            Err(stop) => self.stopped(stop, &built, &state),
         };
-        let outcome = Outcome::new(self.scene, self.body, self.scheme, &state, &report);
+        report.finish(&built.scheme, &state);
+        let outcome = Outcome::new(self.scene, &built.body, &built.scheme, &state, &report);
         outcome.print();
         let written = outcome.write(self.folder, status);
         say(format!("results in {}", self.folder.root.display()));
         result.and(written)
     }
 
+    /// Steps to the end, from grid to grid.
+    fn advance(&self, built: &mut Built, state: &mut State, report: &mut Report) -> std::result::Result<(), Stop> {
+        let (scene, folder, settings) = (self.scene, self.folder, self.settings);
+        let mut observers = scene.observers(&built.body.mesh, folder)?;
+        observers.push(Box::new(Progress::new(settings.end)));
+        let mut regrids = Regrids::new(scene, folder, self.kernel, &built.body, state)?;
+        loop {
+            let (mesh, scheme) = (&built.body.mesh, &built.scheme);
+            let mut run = Run { mesh, scheme, settings, observers, interrupt: &INTERRUPT };
+            if run.advance_until(&mut regrids, state, report)? == End::Done {
+                return Ok(());
+            }
+            observers = run.observers;
+            let totals = regrids.rebuild(built, state).map_err(|why| rebuild::at_step(why, state))?;
+            if let Some([before, after]) = totals {
+                report.regrid(&before, &after);
+                for observer in &mut observers {
+                    observer.regrid(&built.news()).map_err(|why| rebuild::at_step(why, state))?;
+                }
+            }
+        }
+    }
+
     /// Keeps the last good state and says why the run ended.
-    fn stopped(&self, stop: Stop, state: &State) -> (&'static str, Result<()>) {
+    fn stopped(&self, stop: Stop, built: &Built, state: &State) -> (&'static str, Result<()>) {
+        let kept = built
+            .keep_files(self.folder)
+            .and_then(|()| observe::write(&built.scheme, state, &built.files, &self.folder.snapshots()));
         if let Stop::Output(error) = stop {
             return ("failed", Err(error));
         }
-        let kept = observe::write(self.scheme, state, &self.folder.snapshots());
         let place = match &kept {
             Ok(path) => format!("the last good state is in {}", path.display()),
             Err(why) => format!("the last good state could not be kept: {why}"),
         };
         match stop {
-            Stop::Unstable(loss) => ("unstable", Err(self.unstable(&loss, state, &place))),
+            Stop::Unstable(loss) => ("unstable", Err(unstable(&loss, built, state, &place))),
             _ => (
                 "interrupted",
                 Err(Error::Interrupted(format!("at step {}, t = {:.6e} s; {place}", state.step, state.time))),
             ),
         }
     }
+}
 
-    fn unstable(&self, loss: &Loss, state: &State, place: &str) -> Error {
-        Error::Unstable {
-            what: pipeline::describe(loss, self.scheme, &self.body.mesh),
-            time: state.time,
-            step: state.step + 1,
-            remedy: format!("{place}; a smaller scheme.safety, a finer mesh, or [curl] control = \"lcf\" may help"),
-        }
+fn unstable(loss: &Loss, built: &Built, state: &State, place: &str) -> Error {
+    Error::Unstable {
+        what: pipeline::describe(loss, &built.scheme, &built.body.mesh),
+        time: state.time,
+        step: state.step + 1,
+        remedy: format!("{place}; a smaller scheme.safety, a finer mesh, or [curl] control = \"lcf\" may help"),
     }
 }

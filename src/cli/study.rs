@@ -61,6 +61,14 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     start_threads(args.threads)?;
     let scene = Scene::load(&args.scene.scene, &args.scene.sets)?;
+    if !scene.regrids.is_empty() {
+        let remedy = "leave them out by --set regrid=[]";
+        return Err(scene.error(
+            "regrid",
+            "a study compares runs on one grid each, and the scene has [[regrid]]",
+            remedy,
+        ));
+    }
     let (plan, [degree, refinement]) = (args.plan(&scene)?, args.reference(&scene)?);
     let out = args.out.clone().unwrap_or_else(|| Path::new("runs").join(format!("{}-study", scene.name())));
     super::keep(&out.join("study.csv"), args.force)?;

@@ -121,6 +121,7 @@ fn balance_rows(balance: &Balance, energy: f64) -> Vec<(String, String)> {
         ("lost at faces", balance.flux_dissipation),
         ("lost at the boundary", balance.boundary_dissipation),
         ("lost by the projection", balance.curl_dissipation),
+        ("lost by regrids", balance.regrid_dissipation),
     ];
     let there = parts.into_iter().filter(|(_, joule)| *joule != 0.0);
     let all = there.chain([("remainder (time integration)", balance.remainder(energy))]);

@@ -54,6 +54,10 @@ impl Extent {
         Extent { low, high }
     }
 
+    fn meets(&self, low: [f64; 2], high: [f64; 2]) -> bool {
+        (0..2).all(|i| self.low[i] <= high[i] && low[i] <= self.high[i])
+    }
+
     fn has(&self, x: [f64; 2]) -> bool {
         (self.low[0] <= x[0] && x[0] <= self.high[0]) && (self.low[1] <= x[1] && x[1] <= self.high[1])
     }
@@ -159,6 +163,32 @@ impl Locator {
     }
 }
 
+impl Locator {
+    /// Appends the cells whose boxes meet that from `low` to `high`, in no order.
+    pub fn overlapping(&self, low: [f64; 2], high: [f64; 2], out: &mut Vec<usize>) {
+        let mut stack = [(0, 0, 0); usize::BITS as usize + 1];
+        stack[0] = (0, 0, self.entries.len());
+        let mut open = 1;
+        while open > 0 {
+            open -= 1;
+            let (node, a, b) = stack[open];
+            let Node { extent, right } = self.nodes[node];
+            if !extent.meets(low, high) {
+                continue;
+            }
+            if b - a <= LEAF {
+                let meets = self.entries[a..b].iter().filter(|entry| entry.extent().meets(low, high));
+                out.extend(meets.map(|entry| entry.cell));
+                continue;
+            }
+            let middle = a.midpoint(b);
+            stack[open] = (node + 1, a, middle);
+            stack[open + 1] = (right, middle, b);
+            open += 2;
+        }
+    }
+}
+
 fn build(entries: &mut [Entry], nodes: &mut Vec<Node>) {
     let join = |extent: Extent, entry: &Entry| {
         let own = entry.extent();
@@ -181,7 +211,7 @@ fn build(entries: &mut [Entry], nodes: &mut Vec<Node>) {
 
 /// A parent coordinate to 2^-40 (1e-12 of the cell): cells whose points agree up to the rounding of positions then have
 /// the same points to the bit, and share matrices.
-fn on_lattice(xi: f64) -> f64 {
+pub(crate) fn on_lattice(xi: f64) -> f64 {
     const STEPS: f64 = (1_u64 << 40) as f64;
     (xi * STEPS).round() / STEPS
 }
@@ -255,6 +285,24 @@ mod tests {
             assert!((0..n).all(|cell| locator.find([cell as f64 + 0.25, 0.5]).map(|f| f.0) == Some(cell)));
         }
         assert_eq!(Locator::new(&Mesh::default()).find([0.0, 0.0]), None);
+    }
+
+    #[test]
+    fn cells_whose_boxes_meet_a_box_are_all_found_and_no_others() {
+        let mesh = distorted();
+        let locator = Locator::new(&mesh);
+        for [low, high] in
+            [[[0.0, 0.0], [7.0, 5.0]], [[2.2, 1.1], [3.4, 1.3]], [[6.5, 4.9], [9.0, 9.0]], [[8.0, 1.0], [9.0, 2.0]]]
+        {
+            let mut found = Vec::new();
+            locator.overlapping(low, high, &mut found);
+            found.sort_unstable();
+            let meets = |cell: &usize| {
+                let corners = mesh.corners(*cell);
+                (0..2).all(|i| corners.iter().any(|x| x[i] <= high[i]) && corners.iter().any(|x| x[i] >= low[i]))
+            };
+            assert_eq!(found, (0..mesh.cells.len()).filter(meets).collect::<Vec<_>>());
+        }
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //! Arrays, with M = degree + 1: `time` in s and `step`; `u` (cells, 6, M, M), the grid unknowns F11, F12, F21, F22, p1,
 //! p2 at the Gauss nodes (node i along xi1, j along xi2); `displacement` (cells, 2, M, M) or empty; `internal` (n), the
 //! internal variables point by point: cells in the order of the mesh, points in that of the cloud (nodes a = i M + j for
-//! ADER-DGFEM and RK-DGFEM), variables in that of the cell's law, which may have none.
+//! ADER-DGFEM and RK-DGFEM), variables in that of the cell's law, which may have none. Attributes `mesh`,
+//! `cloud`: the files of the run folder that the state lives on.
 
 use std::path::{Path, PathBuf};
 
@@ -28,12 +29,48 @@ pub struct Snapshot {
     pub displacement: Vec<f64>,
     /// Internal variables `[cell][point][variable]`, none for cells of elastic laws.
     pub internal: Vec<f64>,
+    /// The files of its grid.
+    pub grid: GridFiles,
+}
+
+/// Names of the files of a grid in the folder of a run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct GridFiles {
+    /// The mesh.
+    pub mesh: String,
+    /// The cloud.
+    pub cloud: String,
+}
+
+impl Default for GridFiles {
+    fn default() -> Self {
+        Self { mesh: "mesh.h5".to_owned(), cloud: "cloud.h5".to_owned() }
+    }
+}
+
+impl GridFiles {
+    /// Those of a grid that came in after a step: `mesh_000120.h5`, `cloud_000120.h5`.
+    pub fn after(step: usize) -> Self {
+        Self { mesh: format!("mesh_{step:06}.h5"), cloud: format!("cloud_{step:06}.h5") }
+    }
 }
 
 impl Snapshot {
     /// Number of cells that the unknowns are for.
     pub fn cells(&self) -> usize {
         self.u.len() / (6 * (self.degree + 1).pow(2))
+    }
+
+    /// `[cell][component][node]` of the first `components` of F, p, u.
+    pub fn unknowns(&self, components: usize) -> Vec<f64> {
+        let nodes = (self.degree + 1).pow(2);
+        let mut all = Vec::with_capacity(self.cells() * components * nodes);
+        for (cell, unknowns) in self.u.chunks(6 * nodes).enumerate() {
+            all.extend_from_slice(unknowns);
+            let others = self.displacement.get(2 * nodes * cell..2 * nodes * (cell + 1)).unwrap_or_default();
+            all.extend_from_slice(&others[..((components - 6) * nodes).min(others.len())]);
+        }
+        all
     }
 
     fn fault(&self) -> Option<String> {
@@ -61,7 +98,7 @@ impl Snapshot {
             ("displacement", vec![moved, 2, side, side], ArrayRef::F64(&self.displacement)),
             ("internal", vec![self.internal.len()], ArrayRef::F64(&self.internal)),
         ];
-        write_arrays(path, FORMAT, &[], &arrays)
+        write_arrays(path, FORMAT, &[("mesh", self.grid.mesh.clone()), ("cloud", self.grid.cloud.clone())], &arrays)
     }
 
     /// Reads a snapshot.
@@ -76,7 +113,12 @@ impl Snapshot {
             return Err(store.error(format!("the degree {degree} is not possible")));
         }
         let side = degree + 1;
+        // Files of earlier versions have no such names: there was one grid a run.
+        let name = |key: &str, usual: String| store.attribute(key).map_or(usual, str::to_owned);
+        let GridFiles { mesh, cloud } = GridFiles::default();
+        let grid = GridFiles { mesh: name("mesh", mesh), cloud: name("cloud", cloud) };
         Ok(Self {
+            grid,
             time: store.real("time")?,
             step,
             degree,

@@ -24,7 +24,7 @@ const COLUMNS: [&str; 11] = [
 const PLASTIC: &str = "plastic_dissipation";
 
 /// Columns of the balance, behind the others; all but the last cumulated since the start of the run.
-const BALANCE: [&str; 7] = [
+const BALANCE: [&str; 8] = [
     "boundary_work",
     "source_work",
     "flux_dissipation",
@@ -32,6 +32,7 @@ const BALANCE: [&str; 7] = [
     "curl_dissipation",
     "remainder",
     "angular_momentum",
+    "regrid_dissipation",
 ];
 
 /// Writes a row each time it looks. Energies in J, momenta in kg m/s and kg m^2/s, per metre of thickness.
@@ -64,6 +65,7 @@ fn columns(balance: &Balance, totals: &Totals) -> [f64; BALANCE.len()] {
         balance.curl_dissipation,
         balance.remainder(totals.accounted()),
         totals.angular_momentum.unwrap_or(f64::NAN),
+        balance.regrid_dissipation,
     ]
 }
 

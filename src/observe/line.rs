@@ -1,6 +1,6 @@
 //! `lines/<name>.csv`: fields along a straight line of the initial configuration.
 
-use super::{Field, Observer, Schedule, Solution, View};
+use super::{Field, NewGrid, Observer, Schedule, Solution, View};
 use crate::cloud::locate::Locator;
 use crate::error::Error;
 use crate::io::csv::Table;
@@ -22,7 +22,7 @@ pub struct Samples {
 pub struct Line {
     schedule: Schedule,
     table: Table,
-    fields: Vec<Field>,
+    samples: Samples,
     at: Vec<Sample>,
     /// The law of each cell.
     material: Vec<usize>,
@@ -51,7 +51,7 @@ impl Line {
         let names: Vec<String> = samples.fields.iter().flat_map(|field| field.components()).collect();
         let columns: Vec<&str> = ["t", "s", "x", "y"].into_iter().chain(names.iter().map(String::as_str)).collect();
         let table = Table::create(path, &columns)?;
-        Ok(Self { schedule, table, fields: samples.fields.clone(), at, material: material.to_vec() })
+        Ok(Self { schedule, table, samples: samples.clone(), at, material: material.to_vec() })
     }
 }
 
@@ -105,9 +105,16 @@ impl Observer for Line {
         for sample in &self.at {
             let point = solution.at(sample.cell, sample.xi);
             let mut row = vec![view.state.time, sample.s, sample.x[0], sample.x[1]];
-            self.fields.iter().for_each(|field| field.push(solution.law(sample.cell), &point, &mut row));
+            self.samples.fields.iter().for_each(|field| field.push(solution.law(sample.cell), &point, &mut row));
             self.table.push(&row)?;
         }
         self.table.flush()
+    }
+
+    fn regrid(&mut self, grid: &NewGrid) -> Result<(), Error> {
+        let at = self.samples.locate(grid.mesh);
+        self.at = at.map_err(|outside| Error::input(outside.to_string(), Outside::REMEDY))?;
+        self.material = grid.material.to_vec();
+        Ok(())
     }
 }

@@ -17,6 +17,7 @@ pub use snapshots::{Snapshots, take, write};
 pub use solution::{Point, Solution};
 
 use crate::error::Error;
+use crate::io::snapshot::GridFiles;
 use crate::mesh::Mesh;
 use crate::state::State;
 use crate::step::{Balance, Scheme, Survey};
@@ -38,6 +39,17 @@ pub struct View<'a> {
     pub dt: f64,
 }
 
+/// The grid that the run goes on with.
+#[derive(Clone, Copy)]
+pub struct NewGrid<'a> {
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// The law of each cell.
+    pub material: &'a [usize],
+    /// Names of its files in the folder of the run.
+    pub files: &'a GridFiles,
+}
+
 /// Something that looks at the state at certain times.
 pub trait Observer {
     /// Whether the run must meter its balance of energy for it.
@@ -53,4 +65,12 @@ pub trait Observer {
     /// # Errors
     /// Where its output cannot be written.
     fn observe(&mut self, view: &View) -> Result<(), Error>;
+
+    /// The run goes on with another grid. Nothing to do for those that keep nothing of the old one.
+    ///
+    /// # Errors
+    /// A grid on which it cannot go on.
+    fn regrid(&mut self, _: &NewGrid) -> Result<(), Error> {
+        Ok(())
+    }
 }

@@ -1,8 +1,8 @@
 //! Snapshots of the grid unknowns and internal variables, one file each: what `export` and a restart read.
 
-use super::{Observer, Schedule, View};
+use super::{NewGrid, Observer, Schedule, View};
 use crate::error::Error;
-use crate::io::snapshot::{self, Snapshot};
+use crate::io::snapshot::{self, GridFiles, Snapshot};
 use crate::state::{State, UNKNOWNS};
 use crate::step::Scheme;
 use std::path::{Path, PathBuf};
@@ -11,12 +11,13 @@ use std::path::{Path, PathBuf};
 pub struct Snapshots {
     schedule: Schedule,
     folder: PathBuf,
+    grid: GridFiles,
 }
 
 impl Snapshots {
     /// Snapshots into a folder that exists.
     pub fn new(folder: &Path, schedule: Schedule) -> Self {
-        Self { schedule, folder: folder.to_owned() }
+        Self { schedule, folder: folder.to_owned(), grid: GridFiles::default() }
     }
 }
 
@@ -26,7 +27,12 @@ impl Observer for Snapshots {
     }
 
     fn observe(&mut self, view: &View) -> Result<(), Error> {
-        write(view.scheme, view.state, &self.folder).map(|_| ())
+        write(view.scheme, view.state, &self.grid, &self.folder).map(|_| ())
+    }
+
+    fn regrid(&mut self, grid: &NewGrid) -> Result<(), Error> {
+        self.grid = grid.files.clone();
+        Ok(())
     }
 }
 
@@ -34,9 +40,9 @@ impl Observer for Snapshots {
 ///
 /// # Errors
 /// Where the file cannot be written.
-pub fn write(scheme: &Scheme, state: &State, folder: &Path) -> Result<PathBuf, Error> {
+pub fn write(scheme: &Scheme, state: &State, grid: &GridFiles, folder: &Path) -> Result<PathBuf, Error> {
     let path = snapshot::path(folder, state.step);
-    take(scheme, state).write(&path)?;
+    Snapshot { grid: grid.clone(), ..take(scheme, state) }.write(&path)?;
     Ok(path)
 }
 
@@ -51,5 +57,6 @@ pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
         displacement.extend_from_slice(others);
     }
     let internal = scheme.internal_of(state);
-    Snapshot { time: state.time, step: state.step, degree: scheme.operators.degree, u, displacement, internal }
+    let (time, step, degree) = (state.time, state.step, scheme.operators.degree);
+    Snapshot { time, step, degree, u, displacement, internal, ..Snapshot::default() }
 }

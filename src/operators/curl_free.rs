@@ -1,8 +1,8 @@
 //! LCF: the locally curl-free projection of the rows of F (design section 5; not in the paper).
 
-use super::matrix::{Matrix, Pool, classes};
+use super::matrix::{Matrix, Pool, Share, classes};
 use super::{Blocks, Line};
-use crate::lane::F8;
+use crate::lane::{Coefficient, F8};
 use crate::mesh::{Mesh, map};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -42,10 +42,32 @@ impl CurlFree {
         })
     }
 
+    /// F <- Pi F of one cell: `f` as `[component][node]`, `mass` its w_a J_a. The step has its own, which works on eight cells.
+    pub fn project(&self, block: usize, lane: usize, mass: impl Fn(usize) -> f64, f: &mut [f64]) {
+        match self.pool.share[block] {
+            Share::Shared(k) => project(&self.pool.shared[k], |e| *e, mass, f),
+            Share::Own(k) => project(&self.pool.own[k], |e| e.0[lane], mass, f),
+        }
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.pool.shared.iter().map(|c| c.data.len() * 8).sum::<usize>()
             + self.pool.own.iter().map(|c| c.data.len() * 64).sum::<usize>()
+    }
+}
+
+/// Both rows of F (rows of C long) less C (C^T W F).
+fn project<C: Coefficient>(c: &Matrix<C>, number: impl Fn(&C) -> f64, mass: impl Fn(usize) -> f64, f: &mut [f64]) {
+    for row in f.chunks_exact_mut(c.rows) {
+        let mut coefficients = vec![0.0; c.columns];
+        for (r, f) in row.iter().enumerate() {
+            let weighted = mass(r % (c.rows / 2)) * f;
+            coefficients.iter_mut().zip(c.row(r)).for_each(|(sum, entry)| *sum += number(entry) * weighted);
+        }
+        for (r, f) in row.iter_mut().enumerate() {
+            *f -= coefficients.iter().zip(c.row(r)).map(|(k, entry)| k * number(entry)).sum::<f64>();
+        }
     }
 }
 

@@ -3,8 +3,9 @@
 use crate::error::Error;
 use std::path::{Path, PathBuf};
 
-/// `runs/<scene>/`: `scene.toml mesh.h5 cloud.h5 operators.h5 snapshots/ lines/ ledger.csv summary.json export/`.
-#[derive(Debug, Clone, PartialEq)]
+/// `runs/<scene>/`: `scene.toml mesh.h5 cloud.h5 operators.h5 snapshots/ lines/ ledger.csv summary.json export/`, and after
+/// regrids `regrid.csv mesh_<step>.h5 cloud_<step>.h5`.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Folder {
     /// The folder itself.
     pub root: PathBuf,
@@ -51,6 +52,24 @@ impl Folder {
         self.root.join("ledger.csv")
     }
 
+    /// What regrids did.
+    pub fn regrids(&self) -> PathBuf {
+        self.root.join("regrid.csv")
+    }
+
+    /// Meshes and clouds of regrids of an earlier run.
+    fn later_grids(&self) -> Vec<PathBuf> {
+        let is_one = |name: &str| {
+            let rest = name.strip_prefix("mesh_").or_else(|| name.strip_prefix("cloud_"))?.strip_suffix(".h5")?;
+            rest.bytes().all(|c| c.is_ascii_digit()).then_some(())
+        };
+        let entries = std::fs::read_dir(&self.root).into_iter().flatten().flatten();
+        entries
+            .map(|entry| entry.path())
+            .filter(|p| p.file_name().and_then(|n| is_one(n.to_str()?)).is_some())
+            .collect()
+    }
+
     /// Figures of the run.
     pub fn summary(&self) -> PathBuf {
         self.root.join("summary.json")
@@ -63,8 +82,9 @@ impl Folder {
 
     /// Results of an earlier run that are there.
     fn results(&self) -> impl Iterator<Item = PathBuf> {
-        let all = [self.snapshots(), self.root.join("lines"), self.ledger(), self.summary(), self.export()];
-        all.into_iter().filter(|path| path.exists())
+        let all =
+            [self.snapshots(), self.root.join("lines"), self.ledger(), self.regrids(), self.summary(), self.export()];
+        all.into_iter().filter(|path| path.exists()).chain(self.later_grids())
     }
 
     /// Refuses a folder with results of an earlier run; changes nothing.

@@ -42,7 +42,7 @@ impl From<Error> for Stop {
 }
 
 /// A run: what stays the same, and the observers.
-pub struct Run<'a> {
+pub struct Run<'a, 'o> {
     /// The mesh.
     pub mesh: &'a Mesh,
     /// The scheme.
@@ -50,17 +50,60 @@ pub struct Run<'a> {
     /// End and step.
     pub settings: Settings,
     /// Who looks on; may be empty.
-    pub observers: Vec<Box<dyn Observer + 'a>>,
+    pub observers: Vec<Box<dyn Observer + 'o>>,
     /// Set from outside to stop after the step under way.
     pub interrupt: &'a AtomicBool,
 }
 
-impl Run<'_> {
+/// When a run pauses between two steps, for instance for another grid.
+pub trait Pause {
+    /// The next time after `time` at which a step has to end for it.
+    fn stop(&self, time: f64) -> Option<f64>;
+
+    /// Whether the run pauses at this state.
+    fn due(&mut self, view: &View) -> bool;
+}
+
+/// Never.
+struct Never;
+
+impl Pause for Never {
+    fn stop(&self, _: f64) -> Option<f64> {
+        None
+    }
+    fn due(&mut self, _: &View) -> bool {
+        false
+    }
+}
+
+/// Where a run has got to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// To its end time.
+    Done,
+    /// To a pause; it goes on by another call.
+    Paused,
+}
+
+impl Run<'_, '_> {
     /// Steps `state` to the end; it stays at the last good state where the run stops before.
     ///
     /// # Errors
     /// See [`Stop`].
     pub fn advance(&mut self, state: &mut State, report: &mut Report) -> Result<(), Stop> {
+        self.advance_until(&mut Never, state, report).map(|_| ())
+    }
+
+    /// Steps `state` to the end or to a pause, after what is due at that state has been observed.
+    ///
+    /// # Errors
+    /// See [`Stop`].
+    pub fn advance_until(
+        &mut self,
+        pause: &mut dyn Pause,
+        state: &mut State,
+        report: &mut Report,
+    ) -> Result<End, Stop> {
         let mut work = Work::new(self.scheme, state);
         if self.observers.iter().any(|observer| observer.wants_balance()) {
             work = work.with_balance(self.scheme);
@@ -71,11 +114,15 @@ impl Run<'_> {
         let h = self.smallest_h();
         let mut next = survey.clone();
         while state.time < self.settings.end {
-            let stop = self.next_stop(state.time);
+            let stop = pause.stop(state.time).unwrap_or(f64::INFINITY).min(self.next_stop(state.time));
             let dt = step_size(stop - state.time, self.settings.courant * h / survey.fastest);
             self.observe(state, &survey, report.balance.as_ref(), dt)?;
             if self.interrupt.load(Ordering::Relaxed) {
                 return Err(Stop::Interrupted);
+            }
+            let balance = report.balance.as_ref();
+            if pause.due(&View { mesh: self.mesh, scheme: self.scheme, state, survey: &survey, balance, dt }) {
+                return Ok(End::Paused);
             }
             self.scheme.step(state, dt, &survey, &mut work);
             // A step that is meant to end at the end of the run or at an exact time ends there to the last bit.
@@ -88,7 +135,7 @@ impl Run<'_> {
             report.count(self.scheme, dt, &survey, &mut work);
         }
         self.observe(state, &survey, report.balance.as_ref(), 0.0)?;
-        Ok(())
+        Ok(End::Done)
     }
 
     /// min_e h_e, m.

@@ -56,16 +56,20 @@ impl Default for Report {
 
 impl Report {
     pub(super) fn start(&mut self, scheme: &Scheme, state: &State, work: &Work) {
-        self.clock = (Instant::now(), ProcessTime::now());
-        let first = scheme.totals(state);
-        self.balance = work.has_balance().then(|| Balance::starting_at(first.accounted()));
-        self.first = Some(first);
-        self.bytes =
-            scheme.operators.bytes() + work.bytes() + size_of_val(&state.u[..]) + size_of_val(&state.internal[..]);
+        // After a pause the clocks and the balance go on.
+        if self.first.is_none() {
+            self.clock = (Instant::now(), ProcessTime::now());
+            let first = scheme.totals(state);
+            self.balance = work.has_balance().then(|| Balance::starting_at(first.accounted()));
+            self.first = Some(first);
+        }
+        let state = size_of_val(&state.u[..]) + size_of_val(&state.internal[..]);
+        self.bytes = self.bytes.max(scheme.operators.bytes() + work.bytes() + state);
     }
 
     pub(super) fn count(&mut self, scheme: &Scheme, dt: f64, survey: &Survey, work: &mut Work) {
         self.steps += 1;
+        self.updates += (dofs(scheme) * scheme.stages()) as f64;
         self.dt = [self.dt[0].min(dt), self.dt[1].max(dt)];
         self.min_j = self.min_j.min(survey.min_j);
         self.phases.add(&work.take_phases());
@@ -74,11 +78,17 @@ impl Report {
         }
     }
 
+    /// What a regrid took of the energy, J/m.
+    pub fn regrid(&mut self, before: &Totals, after: &Totals) {
+        if let Some(balance) = &mut self.balance {
+            balance.regrid_dissipation += before.accounted() - after.accounted();
+        }
+    }
+
     /// Stops the clocks and takes the totals; also for a run that stopped early.
     pub fn finish(&mut self, scheme: &Scheme, state: &State) {
         (self.wall, self.cpu) = (self.clock.0.elapsed().as_secs_f64(), self.clock.1.elapsed().as_secs_f64());
         self.last = Some(scheme.totals(state));
-        self.updates = (dofs(scheme) * scheme.stages() * self.steps) as f64;
     }
 
     /// DoF-updates per CPU second.
@@ -140,6 +150,7 @@ fn balance_json(balance: &Balance, energy: f64) -> Value {
         "flux_dissipation": balance.flux_dissipation,
         "boundary_dissipation": balance.boundary_dissipation,
         "curl_dissipation": balance.curl_dissipation,
+        "regrid_dissipation": balance.regrid_dissipation,
         "remainder": balance.remainder(energy),
     })
 }

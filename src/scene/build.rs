@@ -172,6 +172,9 @@ impl Scene {
     /// # Errors
     /// A value that is not finite, or J <= 0, with its place in the mesh.
     pub fn initial_state(&self, mesh: &Mesh, scheme: &Scheme) -> Result<State> {
+        if let Some(path) = &self.initial.snapshot {
+            return self.state_of_snapshot(&self.resolve(path), scheme);
+        }
         if self.initial.from_cloud {
             return self.state_from_cloud(mesh, scheme);
         }
@@ -325,12 +328,17 @@ fn samples(output: &Output) -> Option<Samples> {
 }
 
 fn schedule(output: &Output) -> Schedule {
-    let when = match &output.when {
+    schedule_of(&output.when, output.exact_times)
+}
+
+/// When something is done.
+pub fn schedule_of(when: &When, exact: bool) -> Schedule {
+    let when = match when {
         When::At(times) => crate::observe::When::At(times.clone()),
         When::Every(interval) => crate::observe::When::Every(*interval),
         When::EverySteps(steps) => crate::observe::When::EverySteps(*steps),
     };
-    Schedule::new(when, output.exact_times)
+    Schedule::new(when, exact)
 }
 
 /// The registry of boundary conditions.

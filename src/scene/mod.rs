@@ -8,17 +8,20 @@ pub mod build;
 mod cloud;
 mod exact;
 mod expression;
+pub mod grids;
 mod groups;
 mod laws;
 mod names;
 mod origin;
 mod outputs;
 mod points;
-mod portable;
+pub mod portable;
 mod read;
 mod reader;
+pub mod regrid;
 mod restart;
 mod sets;
+mod snapshot;
 mod suggest;
 
 use std::collections::BTreeMap;
@@ -70,6 +73,8 @@ pub struct Scene {
     pub end: f64,
     /// What is recorded when.
     pub outputs: Vec<Output>,
+    /// When the run gets another grid.
+    pub regrids: Vec<regrid::Regrid>,
     #[serde(skip)]
     origin: Origin,
 }
@@ -154,6 +159,8 @@ pub struct Initial {
     pub velocity: [Expression; 2],
     /// F11, F12, F21, F22; default the identity.
     pub deformation: [Expression; 4],
+    /// A snapshot that the run goes on from, as written in the scene; nothing else then counts.
+    pub snapshot: Option<PathBuf>,
 }
 
 /// The condition on a group of boundary edges.

@@ -132,13 +132,13 @@ fn line(table: &mut Reader) -> Result<What> {
 }
 
 /// The keys at, every, every_steps: at most one.
-fn when(table: &mut Reader) -> Result<Option<When>> {
+pub(super) fn when(table: &mut Reader) -> Result<Option<When>> {
     let at = table.numbers("at", TIME)?;
     let every = table.number("every", POSITIVE)?;
     let every_steps = table.integer("every_steps", 1..=usize::MAX)?;
     let given: Vec<&str> = ["at", "every", "every_steps"].into_iter().filter(|key| table.has(key)).collect();
     if let [first, second, ..] = given[..] {
-        let what = format!("an [[output]] has both `{first}` and `{second}`");
+        let what = format!("{} has both `{first}` and `{second}`", table.title());
         return Err(table.wrong(second, what, "keep one of at, every, every_steps"));
     }
     let at = at.map(|mut times| {

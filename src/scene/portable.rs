@@ -1,8 +1,9 @@
 //! The text of a scene for its run folder, so that the folder can be moved and run again.
 
 use super::points::KEYS;
+use super::regrid::NewMesh;
 use super::{Layout, Mesh, Scene};
-use toml_edit::{DocumentMut, InlineTable, Item, Table, value};
+use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, value};
 
 impl Scene {
     /// The text as run, in which the mesh is the file `mesh.h5` beside it if it came from a file, and so the cloud
@@ -24,8 +25,43 @@ impl Scene {
             });
             remove_points_of_materials(&mut document);
         }
+        if self.initial.snapshot.is_some() {
+            in_table(&mut document, "initial", |table| put(table, "snapshot", "initial.h5"));
+        }
+        for (rule, regrid) in self.regrids.iter().enumerate() {
+            let entry = document.get_mut("regrid").and_then(|list| list.get_mut(rule));
+            let Some(table) = entry.and_then(Item::as_table_like_mut) else { continue };
+            match &regrid.grid {
+                NewMesh::Files(files) => {
+                    let names = (0..files.len()).map(|k| regrid_file(rule, k)).collect::<Array>();
+                    table.insert("mesh", value(names));
+                }
+                NewMesh::Geometry { .. } => put(table, "geo", &geometry_file(rule)),
+                _ => {}
+            }
+        }
         document.to_string()
     }
+
+    /// The text of a run that goes on from a snapshot, on the mesh and cloud beside it.
+    pub fn portable_from(&self, snapshot: &str) -> String {
+        let Ok(mut document) = self.portable_toml(true, true).parse::<DocumentMut>() else { return self.to_toml() };
+        in_table(&mut document, "initial", |table| {
+            ["velocity", "deformation"].iter().for_each(|key| drop(table.remove(key)));
+            put(table, "snapshot", snapshot);
+        });
+        document.to_string()
+    }
+}
+
+/// The file of the k-th mesh of a `[[regrid]]` in a run folder.
+pub fn regrid_file(rule: usize, k: usize) -> String {
+    format!("regrid_{rule}_{k}.h5")
+}
+
+/// The file of the geometry of a `[[regrid]]` in a run folder.
+pub fn geometry_file(rule: usize) -> String {
+    format!("regrid_{rule}.geo")
 }
 
 /// Changes the table of a name, made where it is missing.

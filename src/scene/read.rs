@@ -15,7 +15,7 @@ use crate::error::Result;
 /// Reads a whole scene.
 pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> {
     let mut root = Reader::new(document.as_table(), Vec::new(), &origin, "the scene".to_owned());
-    root.later(&["limiter", "regrid", "checkpoint"]);
+    root.later(&["limiter", "checkpoint"]);
     let title = root.text("title")?;
     let mut mesh_table = root.table("mesh")?;
     let mut cloud_table = root.table("cloud")?;
@@ -28,6 +28,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     let mut scheme_table = root.table("scheme")?;
     let mut time_table = root.table("time")?;
     let output_tables = root.tables("output")?;
+    let regrid_tables = root.tables("regrid")?;
     root.finish()?;
 
     let need = |key: &'static str, remedy: &str| root.missing(key, remedy);
@@ -54,6 +55,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         end,
         outputs: super::outputs::outputs(output_tables, &super::build::laws(&materials), start)?,
         materials,
+        regrids: super::regrid::regrids(regrid_tables)?,
         origin: Origin::default(),
     };
     Ok(Scene { origin, ..scene })
@@ -166,8 +168,17 @@ fn initial(table: Option<&mut Reader>, cloud: &Cloud) -> Result<Initial> {
         from_cloud: false,
         velocity: [number(0.0), number(0.0)],
         deformation: [number(1.0), number(0.0), number(0.0), number(1.0)],
+        snapshot: None,
     };
     let Some(table) = table else { return Ok(initial) };
+    if let Some(path) = table.text("snapshot")? {
+        if let Some(other) = ["velocity", "deformation"].into_iter().find(|key| table.has(key)) {
+            let what = format!("[initial] has both `snapshot` and `{other}`");
+            return Err(table.wrong(other, what, "keep one: a snapshot holds the whole state"));
+        }
+        table.finish()?;
+        return Ok(Initial { snapshot: Some(PathBuf::from(path)), ..initial });
+    }
     initial.from_cloud = table.choice("from", &[("cloud", true)], &[])?.unwrap_or(false);
     if initial.from_cloud {
         table.of_kind("cloud");

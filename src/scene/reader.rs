@@ -54,6 +54,28 @@ impl<'a> Reader<'a> {
         self.title = format!("{} of kind \"{kind}\"", self.title);
     }
 
+    /// How messages name the table.
+    pub(super) fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// Whether the value of a key is this text.
+    pub(super) fn is_text(&self, key: &str, text: &str) -> bool {
+        self.table.get(key).and_then(Item::as_str) == Some(text)
+    }
+
+    /// A text, or a list of texts.
+    pub(super) fn texts_or_text(&mut self, key: &'static str) -> Result<Option<Vec<String>>> {
+        if self.table.get(key).is_none_or(|item| !item.is_array()) {
+            return Ok(self.text(key)?.map(|text| vec![text]));
+        }
+        let Some(item) = self.item(key) else { return Ok(None) };
+        let texts = item.as_array().into_iter().flatten().map(|value| value.as_str().map(str::to_owned));
+        let texts: Option<Vec<String>> = texts.collect();
+        let wrong = || self.not(key, "a text, or a list of texts that is not empty", item);
+        texts.filter(|texts| !texts.is_empty()).map(Some).ok_or_else(wrong)
+    }
+
     /// An error at the value of a key.
     pub(super) fn wrong(&self, key: &str, what: impl Into<String>, remedy: impl Into<String>) -> Error {
         self.origin.error(&self.below(&[key]), Part::Value, what, remedy)

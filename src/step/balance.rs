@@ -49,6 +49,8 @@ pub struct Balance {
     /// Loss by the curl-free projection: the energy before minus that after. P : (F - Pi F) is of either sign: where
     /// there are few jumps the projection may give energy to a body under stress.
     pub curl_dissipation: f64,
+    /// Loss by regrids: the energy on the old grid minus that on the new one; of either sign for the strain energy.
+    pub regrid_dissipation: f64,
 }
 
 impl Balance {
@@ -64,7 +66,7 @@ impl Balance {
 
     /// All that was lost by a known cause.
     pub fn dissipation(&self) -> f64 {
-        self.flux_dissipation + self.boundary_dissipation + self.curl_dissipation
+        self.flux_dissipation + self.boundary_dissipation + self.curl_dissipation + self.regrid_dissipation
     }
 
     /// What no cause explains of the `energy` (with plastic dissipation) that is there now: the error of time integration.

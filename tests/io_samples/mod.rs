@@ -77,6 +77,7 @@ pub fn snapshot(degree: usize) -> Snapshot {
         u: awkward(6 * nodes),
         displacement: noise(2 * nodes, 7),
         internal: noise(35, 8),
+        ..Snapshot::default()
     }
 }
 

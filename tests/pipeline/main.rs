@@ -3,6 +3,7 @@
 mod clouds;
 mod common;
 mod errors;
+mod regrid;
 mod stages;
 mod stops;
 mod times;

@@ -1,4 +1,5 @@
-//! Fields in time on a fixed grid: the uniform grid `mesh`, then a temporal collection that includes it.
+//! Fields in time: the uniform grid `mesh`, then a temporal collection that includes it. Times after a regrid have a
+//! uniform grid of their own in its place, which VTK reads; readers that know one grid a series (meshio) do not.
 
 use std::path::{Path, PathBuf};
 
@@ -14,8 +15,8 @@ pub struct Series {
     h5: PathBuf,
     file: hdf5_metno::File,
     pending: Pending,
-    cells: usize,
-    points: usize,
+    /// Cells and points of the grids, the one in use last.
+    grids: Vec<(usize, usize)>,
     /// Sub-quadrilaterals of each cell.
     split: usize,
     steps: Vec<Step>,
@@ -24,6 +25,8 @@ pub struct Series {
 /// A time, and what stands in the HDF5 file for it.
 struct Step {
     time: f64,
+    /// The number of its grid.
+    grid: usize,
     fields: Vec<Stored>,
 }
 
@@ -43,20 +46,32 @@ impl Series {
         let h5 = companion(path)?;
         let pending = Pending::new(&h5)?;
         let file = hdf5::open_new(pending.path()).map_err(|e| Error::output(&h5, hdf5::reason(&e)))?;
-        let n = grid.degree.max(1);
-        let (cells, points, split) = (grid.cells(), grid.points.len(), n * n);
-        let topology = sub_quads(n, cells);
+        let split = grid.degree.max(1).pow(2);
+        let (path, grids) = (path.to_owned(), Vec::new());
+        let mut series = Self { path, h5, pending, file, grids, split, steps: Vec::new() };
+        series.regrid(grid)?;
+        Ok(series)
+    }
+
+    /// Goes on with another grid of the same degree.
+    pub fn regrid(&mut self, grid: &HighOrderGrid) -> Result<()> {
+        grid.check()?;
+        let name = name_of(self.grids.len());
+        let (cells, points) = (grid.cells(), grid.points.len());
+        let topology = sub_quads(grid.degree.max(1), cells);
         let geometry: Vec<f64> = grid.points.iter().flat_map(|p| [p[0], p[1]]).collect();
-        hdf5::put(&file, "mesh/topology", &[cells * split, 4], &topology)
-            .and_then(|()| hdf5::put(&file, "mesh/geometry", &[points, 2], &geometry))
-            .map_err(|e| Error::output(&h5, hdf5::reason(&e)))?;
-        Ok(Self { path: path.to_owned(), h5, pending, file, cells, points, split, steps: Vec::new() })
+        hdf5::put(&self.file, &format!("{name}/topology"), &[cells * self.split, 4], &topology)
+            .and_then(|()| hdf5::put(&self.file, &format!("{name}/geometry"), &[points, 2], &geometry))
+            .map_err(|e| Error::output(&self.h5, hdf5::reason(&e)))?;
+        self.grids.push((cells, points));
+        Ok(())
     }
 
     /// Adds the fields of a time: with a value at each point, and with a value in each cell.
     pub fn push(&mut self, time: f64, point_fields: &[Field], cell_fields: &[Field]) -> Result<()> {
-        check_fields(point_fields, self.points)?;
-        check_fields(cell_fields, self.cells)?;
+        let grid = self.grids.len() - 1;
+        check_fields(point_fields, self.grids[grid].1)?;
+        check_fields(cell_fields, self.grids[grid].0)?;
         let number = self.steps.len();
         let mut fields = Vec::new();
         for field in point_fields {
@@ -67,7 +82,7 @@ impl Series {
             let values: Vec<f64> = of_cell.flat_map(|v| v.repeat(self.split)).collect();
             fields.push(self.put(number, field, "Cell", &values)?);
         }
-        self.steps.push(Step { time, fields });
+        self.steps.push(Step { time, grid, fields });
         Ok(())
     }
 
@@ -82,18 +97,21 @@ impl Series {
 
     /// Gives both files their names.
     pub fn finish(self) -> Result<()> {
-        let Self { path, h5, pending, file, cells, points, split, steps } = self;
+        let Self { path, h5, pending, file, grids, split, steps } = self;
         file.flush().and_then(|()| file.close()).map_err(|e| Error::output(&h5, hdf5::reason(&e)))?;
         pending.commit()?;
         let file = file_name(&h5);
         write_document(&path, |xml| {
-            uniform_grid(xml, (&file, "mesh"), (cells * split, 4, points), |_| Ok(()))?;
+            let size = |grid: usize| (grids[grid].0 * split, 4, grids[grid].1);
+            uniform_grid(xml, (&file, "mesh"), size(0), |_| Ok(()))?;
             let names = [("Name", "series"), ("GridType", "Collection"), ("CollectionType", "Temporal")];
             let collection = xml.create_element("Grid").with_attributes(names);
             if steps.is_empty() {
                 return collection.write_empty().map(drop);
             }
-            collection.write_inner_content(|xml| steps.iter().try_for_each(|s| step(xml, &file, s))).map(drop)
+            collection
+                .write_inner_content(|xml| steps.iter().try_for_each(|s| step(xml, &file, s, size(s.grid))))
+                .map(drop)
         })
     }
 }
@@ -111,25 +129,38 @@ fn dataset(number: usize, center: &str, field: &Field) -> String {
     format!("step{number:06}/{}/{}", if center == "Node" { "point" } else { "cell" }, field.name)
 }
 
-fn step(xml: &mut Xml, file: &str, step: &Step) -> Written {
+/// The name of a grid by its number.
+fn name_of(grid: usize) -> String {
+    if grid == 0 { "mesh".to_owned() } else { format!("mesh{grid}") }
+}
+
+fn step(xml: &mut Xml, file: &str, step: &Step, size: (usize, usize, usize)) -> Written {
+    if step.grid > 0 {
+        return uniform_grid(xml, (file, &name_of(step.grid)), size, |xml| values(xml, file, step));
+    }
     let names = [("Name", "mesh"), ("GridType", "Uniform")];
     xml.create_element("Grid").with_attributes(names).write_inner_content(|xml| {
         let mesh = "xpointer(/Xdmf/Domain/Grid[@GridType='Uniform'][1]/*[self::Topology or self::Geometry])";
         xml.create_element("xi:include").with_attribute(("xpointer", mesh)).write_empty()?;
-        let time = format!("{:e}", step.time);
-        xml.create_element("Time").with_attribute(("Value", time.as_str())).write_empty()?;
-        step.fields.iter().try_for_each(|field| {
-            let kind = match field.kind {
-                Kind::Scalar => "Scalar",
-                Kind::Vector => "Vector",
-                Kind::Tensor => "Tensor",
-            };
-            let shape = field.shape();
-            let values = Item { file, name: &field.dataset, shape: &shape, number: ("Float", "8") };
-            attribute(xml, &field.name, kind, field.center, &values)
-        })
+        values(xml, file, step)
     })?;
     Ok(())
+}
+
+/// The time of a step, and its fields.
+fn values(xml: &mut Xml, file: &str, step: &Step) -> Written {
+    let time = format!("{:e}", step.time);
+    xml.create_element("Time").with_attribute(("Value", time.as_str())).write_empty()?;
+    step.fields.iter().try_for_each(|field| {
+        let kind = match field.kind {
+            Kind::Scalar => "Scalar",
+            Kind::Vector => "Vector",
+            Kind::Tensor => "Tensor",
+        };
+        let shape = field.shape();
+        let values = Item { file, name: &field.dataset, shape: &shape, number: ("Float", "8") };
+        attribute(xml, &field.name, kind, field.center, &values)
+    })
 }
 
 /// The n x n bilinear quadrilaterals of each cell, counter-clockwise, on its nodes in the order of VTK.

@@ -1,0 +1,174 @@
+//! What a regrid did: its lines on the terminal, and its row of `regrid.csv`.
+
+use super::super::print::say;
+use super::{Built, scale};
+use crate::regrid::Transfer;
+use crate::regrid::points::Placed;
+use crate::state::{State, UNKNOWNS};
+use crate::step::Totals;
+use std::time::Instant;
+
+/// Names of the phases of a regrid, in order; `regrid.csv` has their seconds.
+const PHASES: [&str; 7] = ["mesh", "transfer", "points", "links", "matrices", "scheme", "files"];
+
+/// Columns of `regrid.csv` before the phases. Energies in J/m, areas in m^2.
+const COLUMNS: [&str; 19] = [
+    "step",
+    "t",
+    "rule",
+    "cells_before",
+    "cells",
+    "copied",
+    "points_before",
+    "points",
+    "points_kept",
+    "points_outside",
+    "kinetic_before",
+    "kinetic",
+    "strain_before",
+    "strain",
+    "momentum_1_change",
+    "momentum_2_change",
+    "deformation_change",
+    "transfer_error",
+    "uncovered",
+];
+
+/// Columns of `regrid.csv`.
+pub(super) fn columns() -> Vec<&'static str> {
+    [&COLUMNS[..], &PHASES[..]].concat()
+}
+
+/// A regrid in numbers.
+pub(super) struct Outcome<'a> {
+    /// The number of the rule.
+    pub rule: usize,
+    /// The grid before.
+    pub old: &'a Built,
+    /// And after.
+    pub new: &'a Built,
+    /// The state after.
+    pub state: &'a State,
+    /// The fields.
+    pub moved: &'a Transfer,
+    /// The points.
+    pub placed: &'a Placed,
+    /// Totals before and after.
+    pub totals: &'a [Totals; 2],
+}
+
+impl Outcome<'_> {
+    fn copied(&self) -> usize {
+        self.moved.same.iter().flatten().count()
+    }
+
+    /// The error in the standard measure: over sqrt(int |F - 1|^2 + |v|^2 / c_p^2).
+    fn error(&self) -> f64 {
+        let (scheme, u) = (&self.new.scheme, &self.moved.u);
+        let (n, scale) = (scheme.operators.nodes(), scale(scheme));
+        let mut sum = 0.0;
+        for (cell, u) in u.chunks_exact(self.state.components * n).enumerate() {
+            let (block, lane) = scheme.operators.blocks.slot[cell];
+            for a in 0..n {
+                let mass = scheme.operators.geometry.mass[block * n + a].0[lane];
+                for (k, scale) in scale[self.new.body.material[cell]].iter().enumerate().take(UNKNOWNS) {
+                    let rest = if k == 0 || k == 3 { 1.0 } else { 0.0 };
+                    sum += mass * scale * (u[k * n + a] - rest).powi(2);
+                }
+            }
+        }
+        if sum > 0.0 { self.moved.error / sum.sqrt() } else { self.moved.error }
+    }
+
+    /// The row of `regrid.csv`.
+    pub fn row(&self, clock: &Clock) -> Vec<f64> {
+        let [before, after] = self.totals;
+        let change = |k: usize| after.momentum[k] - before.momentum[k];
+        let deformation =
+            before.deformation.iter().zip(after.deformation).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let count = |k: usize| k as f64;
+        let mut row = vec![
+            count(self.state.step),
+            self.state.time,
+            count(self.rule),
+            count(self.old.body.mesh.cells.len()),
+            count(self.new.body.mesh.cells.len()),
+            count(self.copied()),
+            count(self.old.body.cloud.len()),
+            count(self.placed.cloud.len()),
+            count(self.placed.kept.iter().filter(|kept| **kept).count()),
+            count(self.placed.outside),
+            before.kinetic,
+            after.kinetic,
+            before.strain,
+            after.strain,
+            change(0),
+            change(1),
+            deformation,
+            self.error(),
+            self.moved.uncovered[0] + self.moved.uncovered[1],
+        ];
+        row.extend(clock.seconds);
+        row
+    }
+
+    /// Says it.
+    pub fn print(&self, clock: &Clock) {
+        let (state, [before, after]) = (self.state, self.totals);
+        let how = if self.moved.structured { "lines" } else { "clipping" };
+        say(format!(
+            "regrid at step {}, t = {:.6e} s: {} -> {} cells ({} copied, by {how}), {} -> {} points ({} kept)",
+            state.step,
+            state.time,
+            self.old.body.mesh.cells.len(),
+            self.new.body.mesh.cells.len(),
+            self.copied(),
+            self.old.body.cloud.len(),
+            self.placed.cloud.len(),
+            self.placed.kept.iter().filter(|kept| **kept).count(),
+        ));
+        say(format!(
+            "  error {:.3e}; kinetic {:.9e} -> {:.9e} J/m, strain {:.9e} -> {:.9e} J/m, momentum {:+.1e}, {:+.1e} kg/s",
+            self.error(),
+            before.kinetic,
+            after.kinetic,
+            before.strain,
+            after.strain,
+            after.momentum[0] - before.momentum[0],
+            after.momentum[1] - before.momentum[1],
+        ));
+        if self.moved.uncovered != [0.0; 2] {
+            let [new, old] = self.moved.uncovered;
+            say(format!(
+                "  the grids differ at their boundary: {new:.3e} m^2 of the new one filled, {old:.3e} m^2 of the old one left out"
+            ));
+        }
+        if self.placed.outside > 0 {
+            say(format!(
+                "  {} points lie outside of the new mesh, and are gone with their histories",
+                self.placed.outside
+            ));
+        }
+        let phases: Vec<String> = PHASES.iter().zip(clock.seconds).map(|(name, s)| format!("{name} {s:.4}")).collect();
+        say(format!("  seconds: {}", phases.join(", ")));
+    }
+}
+
+/// Seconds of the phases.
+pub(super) struct Clock {
+    last: Instant,
+    seconds: [f64; PHASES.len()],
+}
+
+impl Clock {
+    /// Started now.
+    pub fn new() -> Self {
+        Self { last: Instant::now(), seconds: [0.0; PHASES.len()] }
+    }
+
+    /// Books the time since the last lap for a phase.
+    pub fn lap(&mut self, phase: usize) {
+        self.seconds[phase] = self.last.elapsed().as_secs_f64();
+        self.last = Instant::now();
+    }
+}

@@ -1,0 +1,336 @@
+//! Between any two grids: intersections of cells by clipping, quadrature on the pieces, inverse maps in both cells.
+
+use super::clip::Polygon;
+use super::nodal::{Nodal, Values, combine, gather, scatter, spread};
+use super::{Field, Grid, LARGEST_DIFFERENCE, Share, Taken, Transfer, integral, is_momentum};
+use crate::cloud::Locator;
+use crate::error::Error;
+use crate::mesh::map::{self, Corners};
+use crate::quadrature::gauss_legendre;
+use rayon::prelude::*;
+
+/// A cell is covered where what is not is below this part of it: roundings of some clipped areas.
+const COVERED: f64 = 1e-11;
+/// Pieces below this part of a cell are rounding.
+const NO_PIECE: f64 = 1e-14;
+/// Beyond the pieces of a cell the polynomial of its largest piece goes on up to this part of the cell; its mean beyond.
+const EXTENDED: f64 = 0.3;
+
+/// Projects `field` onto the new cells that `same` does not name, into `u`; what each cell adds to the sums.
+///
+/// # Errors
+/// A new cell of a material that the old grid lacks.
+pub(super) fn project<const M: usize>(
+    old: &Grid,
+    new: &Grid,
+    field: &Field,
+    same: &[Option<usize>],
+    u: &mut [f64],
+) -> Result<Vec<Share>, Error> {
+    let locator = Locator::new(old.mesh);
+    let job = Job {
+        old,
+        new,
+        field,
+        nodal: Nodal::<M>::new(field.basis),
+        locator,
+        exact: gauss_legendre(2 * M - 1),
+        fine: gauss_legendre(2 * M + 2),
+    };
+    let stride = field.components * M * M;
+    let shares =
+        u.par_chunks_exact_mut(stride).enumerate().map_init(Scratch::default, |scratch, (cell, u)| match same[cell] {
+            Some(twin) => {
+                u.copy_from_slice(&field.u[stride * twin..stride * (twin + 1)]);
+                let area = map::area(&new.mesh.corners(cell));
+                let total = integral(new, field, cell, u);
+                Ok(Share { taken: vec![Taken { old: twin, area, total }], ..Share::default() })
+            }
+            None => job.cell(cell, scratch, u),
+        });
+    shares.collect()
+}
+
+/// What all new cells share.
+struct Job<'a, const M: usize> {
+    old: &'a Grid<'a>,
+    new: &'a Grid<'a>,
+    field: &'a Field<'a>,
+    nodal: Nodal<M>,
+    locator: Locator,
+    /// Gauss points per direction on a piece of two parallelograms: Phi_a U_old has the degree 4N there, and the map of the
+    /// piece adds one to it.
+    exact: (Vec<f64>, Vec<f64>),
+    /// On other pieces, where inverse maps are no polynomials: on cells distorted by a fifth kinetic energy rose by 1.4e-11
+    /// (S3) with 2N + 2 points, see `tests`.
+    fine: (Vec<f64>, Vec<f64>),
+}
+
+/// Memory of a thread.
+#[derive(Default)]
+struct Scratch {
+    candidates: Vec<usize>,
+    samples: Vec<Sample>,
+}
+
+/// A point of the quadrature.
+#[derive(Clone, Copy)]
+struct Sample {
+    weight: f64,
+    /// In the new cell.
+    xi: [f64; 2],
+    value: Values,
+}
+
+impl<const M: usize> Job<'_, M> {
+    fn cell(&self, cell: usize, scratch: &mut Scratch, u: &mut [f64]) -> Result<Share, Error> {
+        let corners = self.new.mesh.corners(cell);
+        let area = map::area(&corners);
+        let mut share = self.sample(cell, &corners, area, scratch);
+        let covered: f64 = share.taken.iter().map(|taken| taken.area).sum();
+        let hole = (1.0 - covered / area).max(0.0);
+        let base = self.base(cell, &corners, &share.taken, hole)?;
+        // M^-1 int Phi_a (U_old - base) + base: uniform states are exact whatever the quadrature, and what no old cell
+        // covers has the values of the base.
+        let mut values = [[[0.0; 8]; M]; M];
+        for sample in &scratch.samples {
+            let (x, y) = (self.nodal.at(sample.xi[0]), self.nodal.at(sample.xi[1]));
+            let below = base.at(&self.nodal, map::position(&corners, sample.xi));
+            let value: Values = std::array::from_fn(|k| sample.weight * (sample.value[k] - below[k]));
+            spread(&value, &x, &y, &mut values);
+        }
+        for (i, j) in (0..M).flat_map(|i| (0..M).map(move |j| (i, j))) {
+            let xi = self.field.basis.node_2d(i * M + j);
+            let mass = super::mass(self.new.mesh, cell, self.field.basis, i * M + j);
+            let below = base.at(&self.nodal, map::position(&corners, xi));
+            (0..8).for_each(|k| values[i][j][k] = values[i][j][k] / mass + below[k]);
+        }
+        let scale = &self.field.scale[self.new.material[cell]];
+        for sample in &scratch.samples {
+            let after = combine(&values, &self.nodal.at(sample.xi[0]), &self.nodal.at(sample.xi[1]));
+            share.add(sample.weight, &sample.value, &after, scale);
+        }
+        if hole > COVERED {
+            share.uncovered = area - covered;
+        }
+        scatter::<M>(&values, |a| a, u);
+        Ok(share)
+    }
+
+    /// U_old at the points of the quadrature on all pieces of a new cell.
+    fn sample(&self, cell: usize, corners: &Corners, area: f64, scratch: &mut Scratch) -> Share {
+        let Scratch { candidates, samples } = scratch;
+        samples.clear();
+        candidates.clear();
+        let bound =
+            |pick: fn(f64, f64) -> f64| [0, 1].map(|i| corners.iter().map(|x| x[i]).reduce(pick).unwrap_or(0.0));
+        self.locator.overlapping(bound(f64::min), bound(f64::max), candidates);
+        candidates.sort_unstable();
+        // Relative to a corner, so that cells far from the origin lose no digits.
+        let origin = corners[0];
+        let shift = |corners: &Corners| corners.map(|x| [x[0] - origin[0], x[1] - origin[1]]);
+        let own = shift(corners);
+        let mut share = Share::default();
+        for &old in candidates.iter().filter(|&&old| self.old.material[old] == self.new.material[cell]) {
+            let other = shift(&self.old.mesh.corners(old));
+            let piece = Polygon::quad(own).clipped(&other);
+            let common = piece.area();
+            if common <= NO_PIECE * area {
+                continue;
+            }
+            let first = samples.len();
+            self.sample_piece(&piece, [&own, &other], old, samples);
+            let mut total = [0.0; 8];
+            samples[first..].iter().for_each(|s| (0..8).for_each(|k| total[k] += s.weight * s.value[k]));
+            share.taken.push(Taken { old, area: common, total });
+        }
+        share
+    }
+
+    fn sample_piece(&self, piece: &Polygon, cells: [&Corners; 2], old: usize, samples: &mut Vec<Sample>) {
+        let stride = self.field.components * M * M;
+        let there = gather::<M>(&self.field.u[stride * old..stride * (old + 1)], |a| a);
+        let (nodes, weights) = if cells.iter().all(|cell| is_affine(cell)) { &self.exact } else { &self.fine };
+        piece.quads(|pick| {
+            let x = pick.map(|k| piece.corners()[k]);
+            // Parent coordinates at the corners of the piece are first guesses inside.
+            let guesses = cells.map(|cell| x.map(|x| map::parent(cell, x).unwrap_or([0.5; 2])));
+            for (q, r) in (0..nodes.len()).flat_map(|q| (0..nodes.len()).map(move |r| (q, r))) {
+                let at = [nodes[q], nodes[r]];
+                let weight = weights[q] * weights[r] * map::determinant(&map::jacobian(&x, at));
+                let point = map::position(&x, at);
+                let [xi, eta] = [0, 1].map(|k| improved(cells[k], point, map::position(&guesses[k], at)));
+                let value = combine(&there, &self.nodal.at(eta[0]), &self.nodal.at(eta[1]));
+                samples.push(Sample { weight, xi, value });
+            }
+        });
+    }
+
+    /// What the projection starts from: the mean over the pieces; where a part is not covered, the polynomial of the
+    /// largest piece, or the mean of the nearest cell.
+    fn base(&self, cell: usize, corners: &Corners, taken: &[Taken], hole: f64) -> Result<Base<M>, Error> {
+        let stride = self.field.components * M * M;
+        let unknowns = |old: usize| &self.field.u[stride * old..stride * (old + 1)];
+        if hole > COVERED && hole < EXTENDED {
+            let largest = taken.iter().max_by(|a, b| a.area.total_cmp(&b.area).then(b.old.cmp(&a.old)));
+            if let Some(largest) = largest {
+                let corners = self.old.mesh.corners(largest.old);
+                return Ok(Base::Polynomial(corners, Box::new(gather::<M>(unknowns(largest.old), |a| a))));
+            }
+        }
+        let area: f64 = taken.iter().map(|taken| taken.area).sum();
+        if area > 0.0 {
+            return Ok(Base::Mean(std::array::from_fn(|k| {
+                taken.iter().map(|taken| taken.total[k]).sum::<f64>() / area
+            })));
+        }
+        let near = self.nearest(corners, self.new.material[cell]).ok_or_else(|| {
+            let group = &self.new.mesh.groups[self.new.mesh.cell_group[cell]];
+            let what =
+                format!("cell {} of group {group} has a material that the old grid lacks", self.new.mesh.number(cell));
+            Error::input(what, "give a mesh with the groups of the old one")
+        })?;
+        let area = map::area(&self.old.mesh.corners(near));
+        Ok(Base::Mean(integral(self.old, self.field, near, unknowns(near)).map(|total| total / area)))
+    }
+
+    /// The old cell of a material with the nearest centre. (Only for cells that no old one touches: there are few.)
+    fn nearest(&self, corners: &Corners, material: usize) -> Option<usize> {
+        let centre = map::position(corners, [0.5; 2]);
+        let distance = |old: usize| {
+            let other = map::position(&self.old.mesh.corners(old), [0.5; 2]);
+            (other[0] - centre[0]).hypot(other[1] - centre[1])
+        };
+        let cells = (0..self.old.mesh.cells.len()).filter(|&old| self.old.material[old] == material);
+        cells.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+    }
+}
+
+/// What the projection starts from.
+enum Base<const M: usize> {
+    Mean(Values),
+    /// The polynomial of a cell with these corners, which goes on beyond it.
+    Polynomial(Corners, Box<[[Values; M]; M]>),
+}
+
+impl<const M: usize> Base<M> {
+    #[inline(always)]
+    fn at(&self, nodal: &Nodal<M>, x: [f64; 2]) -> Values {
+        match self {
+            Base::Mean(mean) => *mean,
+            Base::Polynomial(corners, values) => {
+                // Beyond the fold of the map, far outside, the nearest corner has to do.
+                let xi = map::parent(corners, x).unwrap_or([0.5; 2]).map(|xi| xi.clamp(-1.0, 2.0));
+                combine(values, &nodal.at(xi[0]), &nodal.at(xi[1]))
+            }
+        }
+    }
+}
+
+/// Whether a cell is a parallelogram but for rounding.
+fn is_affine(corners: &Corners) -> bool {
+    let [a, b, c, d] = corners;
+    let size = (0..2).map(|i| (c[i] - a[i]).abs()).fold(0.0, f64::max);
+    (0..2).all(|i| (a[i] - b[i] + c[i] - d[i]).abs() <= 1e-13 * size)
+}
+
+/// Parent coordinates of x by Newton's method from a guess that is off by how far the cell is from a parallelogram.
+#[inline(always)]
+fn improved(corners: &Corners, x: [f64; 2], mut xi: [f64; 2]) -> [f64; 2] {
+    for _ in 0..12 {
+        let at = map::position(corners, xi);
+        let k = map::jacobian(corners, xi);
+        let (det, rest) = (map::determinant(&k), [x[0] - at[0], x[1] - at[1]]);
+        let step = [(k[1][1] * rest[0] - k[0][1] * rest[1]) / det, (k[0][0] * rest[1] - k[1][0] * rest[0]) / det];
+        xi = [xi[0] + step[0], xi[1] + step[1]];
+        // Quadratic: what would follow is below rounding.
+        if step[0].abs().max(step[1].abs()) < 1e-9 {
+            break;
+        }
+    }
+    xi
+}
+
+/// Makes the totals exact. On cells that are no parallelograms U_old(X) is no polynomial, and its quadrature over the pieces
+/// of an old cell misses its integral by some 1e-10: each new cell gets its share of that. Where the grids do not
+/// cover the same region, totals of momentum and means of all else are restored for each material.
+///
+/// # Errors
+/// Grids that differ by too much.
+pub(super) fn settle(old: &Grid, new: &Grid, field: &Field, shares: &[Share], out: &mut Transfer) -> Result<(), Error> {
+    let n = field.basis.len() * field.basis.len();
+    let stride = field.components * n;
+    let areas: Vec<f64> = (0..old.mesh.cells.len()).map(|cell| map::area(&old.mesh.corners(cell))).collect();
+    let (mut left, mut gap) = (areas.clone(), vec![[0.0; 8]; areas.len()]);
+    for (cell, gap) in gap.iter_mut().enumerate() {
+        *gap = integral(old, field, cell, &field.u[stride * cell..stride * (cell + 1)]);
+    }
+    for taken in shares.iter().flat_map(|share| &share.taken) {
+        left[taken.old] -= taken.area;
+        (0..8).for_each(|k| gap[taken.old][k] -= taken.total[k]);
+    }
+    let is_covered = |cell: usize| left[cell].abs() <= COVERED * areas[cell];
+    out.uncovered = [
+        shares.iter().map(|share| share.uncovered).sum(),
+        (0..areas.len()).filter(|&cell| !is_covered(cell)).map(|cell| left[cell]).sum(),
+    ];
+    let whole: f64 = areas.iter().sum();
+    refuse(out.uncovered, whole)?;
+    let same = &out.same;
+    out.u.par_chunks_exact_mut(stride).enumerate().filter(|(cell, _)| same[*cell].is_none()).for_each(|(cell, u)| {
+        let area = map::area(&new.mesh.corners(cell));
+        for taken in shares[cell].taken.iter().filter(|taken| is_covered(taken.old)) {
+            let part = taken.area / areas[taken.old] / area;
+            for (k, u) in u.chunks_exact_mut(n).enumerate() {
+                u.iter_mut().for_each(|u| *u += part * gap[taken.old][k]);
+            }
+        }
+    });
+    if out.uncovered != [0.0; 2] {
+        restore(old, new, field, out);
+    }
+    Ok(())
+}
+
+fn refuse(uncovered: [f64; 2], whole: f64) -> Result<(), Error> {
+    if uncovered[0].max(uncovered[1]) <= LARGEST_DIFFERENCE * whole {
+        return Ok(());
+    }
+    let what = format!(
+        "the new grid does not fill the body: {:.3e} m^2 of it lie outside of the old grid, and it leaves out {:.3e} m^2 of {whole:.3e} m^2",
+        uncovered[0], uncovered[1]
+    );
+    let remedy = format!(
+        "give a mesh of the same body in its initial configuration with the same groups; only edges of a curved boundary may differ, by {LARGEST_DIFFERENCE} of the area"
+    );
+    Err(Error::input(what, remedy))
+}
+
+/// Adds to each material's new cells (not to copies) the constants that restore its total momentum and its means.
+fn restore(old: &Grid, new: &Grid, field: &Field, out: &mut Transfer) {
+    let n = field.basis.len() * field.basis.len();
+    let stride = field.components * n;
+    let total = |grid: &Grid, u: &[f64], material: usize, of: &dyn Fn(usize) -> bool| {
+        let (mut sum, mut area) = ([0.0; 8], 0.0);
+        for cell in (0..grid.material.len()).filter(|&cell| grid.material[cell] == material && of(cell)) {
+            let own = integral(grid, field, cell, &u[stride * cell..stride * (cell + 1)]);
+            (0..8).for_each(|k| sum[k] += own[k]);
+            area += map::area(&grid.mesh.corners(cell));
+        }
+        (sum, area)
+    };
+    for material in 0..field.scale.len() {
+        let (before, old_area) = total(old, field.u, material, &|_| true);
+        let (after, new_area) = total(new, &out.u, material, &|_| true);
+        let (_, free) = total(new, &out.u, material, &|cell| out.same[cell].is_none());
+        if free == 0.0 {
+            continue;
+        }
+        for cell in (0..new.material.len()).filter(|&c| new.material[c] == material && out.same[c].is_none()) {
+            for (k, u) in out.u[stride * cell..stride * (cell + 1)].chunks_exact_mut(n).enumerate() {
+                let wanted = if is_momentum(k) { before[k] } else { before[k] / old_area * new_area };
+                u.iter_mut().for_each(|u| *u += (wanted - after[k]) / free);
+            }
+        }
+    }
+}

@@ -1,0 +1,388 @@
+//! Where material points go at a regrid: they stay where they are in X wherever the new cells can carry them, and so do
+//! their internal variables. New points take those of the nearest old point of their material; nothing is interpolated.
+
+use super::Grid;
+use crate::cloud::{Cloud, Locator, locate::on_lattice};
+use crate::error::Error;
+use crate::mesh::{Mesh, map};
+use crate::operators::certificate::{Certificate, certify};
+use crate::operators::{Limits, Line, Sampling};
+use rayon::prelude::*;
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
+
+names! {
+    /// What becomes of the points of new cells.
+    Policy {
+        /// They stay where they are; a cell that cannot carry them gets points at its Gauss nodes instead.
+        Keep = "keep",
+        /// As keep, but a cell with too few points gets more of the layout, and of more than twice as many as it needs those
+        /// stay that are nearest to its Gauss nodes.
+        Enrich = "enrich",
+        /// Cells that are new get the layout of the scene: congruent cells share their matrices.
+        Layout = "layout",
+    }
+}
+
+/// The points of the new grid.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Placed {
+    /// The points.
+    pub cloud: Cloud,
+    /// For each the old point that it is, or that is nearest in X among those of its material; empty where nobody asks.
+    pub source: Vec<usize>,
+    /// Whether it is that point itself.
+    pub kept: Vec<bool>,
+    /// Whether it is virtual, on a Gauss node of a cell that could not carry its points; empty: none is.
+    pub virtual_points: Vec<bool>,
+    /// Old points that lie outside of the new mesh, and are gone.
+    pub outside: usize,
+}
+
+/// What new cells are to carry.
+#[derive(Debug, Clone, Copy)]
+pub struct Demand<'a> {
+    /// The nodal basis.
+    pub line: &'a Line,
+    /// What becomes of the points.
+    pub policy: Policy,
+    /// Points of the scene's layout in all cells of the new mesh.
+    pub fresh: &'a Cloud,
+    /// Whether the method samples at the points; else any points will do.
+    pub samples: bool,
+    /// What points may amplify before Gauss nodes take their place.
+    pub limits: &'a Limits,
+    /// Which of the old points are virtual, on Gauss nodes; empty: none.
+    pub virtual_points: &'a [bool],
+    /// Whether a law has internal variables, whose sources are then looked for.
+    pub histories: bool,
+}
+
+/// A point of a new cell.
+#[derive(Debug, Clone, Copy)]
+struct Seat {
+    xi: [f64; 2],
+    /// The old point that it is.
+    old: Option<usize>,
+    /// Whether it stands on a Gauss node because the cell cannot carry its points.
+    is_virtual: bool,
+}
+
+/// Places the points of `cloud` in the new grid; `same` names the old cell that a new one equals.
+///
+/// # Errors
+/// A material without any old point.
+pub fn place(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>], demand: &Demand) -> Result<Placed, Error> {
+    let (mut seats, outside) = match demand.policy {
+        Policy::Layout => (of_layout(cloud, same, demand.fresh), 0),
+        Policy::Keep | Policy::Enrich => stay(old, cloud, new, same),
+    };
+    // A cell whose points are as they were is not looked at: what it could carry it can.
+    let changed: Vec<bool> = seats
+        .iter()
+        .zip(same)
+        .map(|(seats, same)| same.is_none_or(|twin| cloud.of(twin).len() != seats.len()))
+        .collect();
+    if demand.samples {
+        if demand.policy == Policy::Enrich {
+            enrich(&mut seats, &changed, new, demand)?;
+        }
+        if demand.policy != Policy::Layout {
+            let poor = poor(&seats, &changed, new, demand)?;
+            for cell in poor {
+                seats[cell] =
+                    demand.line.nodes().into_iter().map(|xi| Seat { xi, old: None, is_virtual: true }).collect();
+            }
+        }
+    }
+    let source = if demand.histories { sources(old, cloud, new, &seats)? } else { vec![] };
+    let mut out = Placed { cloud: Cloud { first: vec![0], xi: vec![] }, source, outside, ..Placed::default() };
+    let was_virtual = |seat: &Seat| seat.old.is_some_and(|old| demand.virtual_points.get(old) == Some(&true));
+    for seats in &seats {
+        out.virtual_points.extend(seats.iter().map(|seat| seat.is_virtual || was_virtual(seat)));
+        out.kept.extend(seats.iter().map(|seat| seat.old.is_some()));
+        out.cloud.xi.extend(seats.iter().map(|seat| seat.xi));
+        out.cloud.first.push(out.cloud.xi.len());
+    }
+    if !out.virtual_points.contains(&true) {
+        out.virtual_points.clear();
+    }
+    Ok(out)
+}
+
+/// Copies keep their points; other cells have those of the layout.
+fn of_layout(cloud: &Cloud, same: &[Option<usize>], fresh: &Cloud) -> Vec<Vec<Seat>> {
+    let of = |(cell, same): (usize, &Option<usize>)| match same {
+        Some(twin) => own(cloud, *twin),
+        None => fresh.of(cell).iter().map(|&xi| Seat { xi, old: None, is_virtual: false }).collect(),
+    };
+    same.iter().enumerate().map(of).collect()
+}
+
+/// The points of a cell that stays, with their parent coordinates to the bit.
+fn own(cloud: &Cloud, cell: usize) -> Vec<Seat> {
+    let numbered = cloud.of(cell).iter().zip(cloud.first[cell]..);
+    numbered.map(|(&xi, point)| Seat { xi, old: Some(point), is_virtual: false }).collect()
+}
+
+/// All points where they are in X; how many lie outside of the new mesh.
+fn stay(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>]) -> (Vec<Vec<Seat>>, usize) {
+    let mut stays = vec![false; old.mesh.cells.len()];
+    let mut seats: Vec<Vec<Seat>> = vec![vec![]; same.len()];
+    for (cell, twin) in same.iter().enumerate().filter_map(|(cell, same)| Some((cell, (*same)?))) {
+        stays[twin] = true;
+        seats[cell] = own(cloud, twin);
+    }
+    let moving: Vec<(usize, usize)> = (0..stays.len())
+        .filter(|&cell| !stays[cell])
+        .flat_map(|cell| (cloud.first[cell]..cloud.first[cell + 1]).map(move |point| (cell, point)))
+        .collect();
+    if moving.is_empty() {
+        return (seats, 0);
+    }
+    let locator = Locator::new(new.mesh);
+    let find = |&(cell, point): &(usize, usize)| {
+        let found = locator.find(map::position(&old.mesh.corners(cell), cloud.xi[point]))?;
+        // On an edge between two materials a point stays with its own: the cell that has it is the lowest there.
+        (new.material[found.0] == old.material[cell]).then_some((found, point))
+    };
+    let found: Vec<_> = moving.par_iter().map(find).collect();
+    for ((cell, xi), point) in found.iter().flatten() {
+        seats[*cell].push(Seat { xi: xi.map(on_lattice), old: Some(*point), is_virtual: false });
+    }
+    (seats, found.iter().filter(|found| found.is_none()).count())
+}
+
+/// Changed cells whose points cannot carry Q_N.
+fn poor(seats: &[Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand) -> Result<Vec<usize>, Error> {
+    // Of the others one point is enough to be no work.
+    let look = |cell: usize| if changed[cell] { &seats[cell][..] } else { &[] };
+    let mut cloud = Cloud { first: vec![0], xi: vec![] };
+    for cell in 0..seats.len() {
+        cloud.xi.extend(look(cell).iter().map(|seat| seat.xi));
+        cloud.first.push(cloud.xi.len());
+    }
+    let certificates = certify(new.mesh, demand.line, Sampling::Cloud(&cloud))?;
+    let cannot = |cell: &usize| changed[*cell] && !carries(&certificates[*cell], demand);
+    Ok((0..seats.len()).filter(cannot).collect())
+}
+
+fn carries(certificate: &Certificate, demand: &Demand) -> bool {
+    demand.limits.cause(certificate, demand.line.m * demand.line.m).is_none()
+}
+
+/// Adds points of the layout where there are too few; where there are too many, those nearest to the Gauss nodes stay (they
+/// amplify least at the faces).
+fn enrich(seats: &mut [Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand) -> Result<(), Error> {
+    let gap = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    for cell in poor(seats, changed, new, demand)? {
+        // Half of the spacing of the layout: where a point is that near, another would only be its double.
+        let near = 0.5 / (demand.fresh.of(cell).len() as f64).sqrt();
+        for &xi in demand.fresh.of(cell) {
+            if seats[cell].iter().all(|seat| gap(seat.xi, xi) > near) {
+                seats[cell].push(Seat { xi, old: None, is_virtual: false });
+            }
+        }
+    }
+    let nodes = demand.line.nodes();
+    for cell in (0..seats.len()).filter(|&cell| changed[cell]) {
+        let (wanted, own) = (&nodes, &seats[cell]);
+        if own.len() <= 2 * wanted.len().max(demand.fresh.of(cell).len()) {
+            continue;
+        }
+        let nearest = |xi: &[f64; 2]| {
+            (0..own.len()).min_by(|&a, &b| gap(own[a].xi, *xi).total_cmp(&gap(own[b].xi, *xi))).unwrap_or(0)
+        };
+        let mut chosen: Vec<usize> = wanted.iter().map(nearest).collect();
+        chosen.sort_unstable();
+        chosen.dedup();
+        let thinned: Vec<Seat> = chosen.into_iter().map(|k| own[k]).collect();
+        let cloud = Cloud { first: vec![0, thinned.len()], xi: thinned.iter().map(|seat| seat.xi).collect() };
+        let corners = new.mesh.corners(cell);
+        let one = Mesh { nodes: corners.to_vec(), cells: vec![[0, 1, 2, 3]], ..Mesh::default() };
+        if carries(&certify(&one, demand.line, Sampling::Cloud(&cloud))?[0], demand) {
+            seats[cell] = thinned;
+        }
+    }
+    Ok(())
+}
+
+/// The old point that each is, or that is nearest.
+fn sources(old: &Grid, cloud: &Cloud, new: &Grid, seats: &[Vec<Seat>]) -> Result<Vec<usize>, Error> {
+    let is_new = |seats: &Vec<Seat>| seats.iter().any(|seat| seat.old.is_none());
+    let trees = if seats.iter().any(is_new) { trees(old, cloud) } else { vec![] };
+    let of = |cell: usize| -> Result<Vec<usize>, Error> {
+        let corners = new.mesh.corners(cell);
+        let source = |seat: &Seat| {
+            let near = || trees.get(new.material[cell])?.nearest_neighbor(map::position(&corners, seat.xi));
+            seat.old.or_else(|| near().map(|point| point.data)).ok_or_else(|| {
+                let what = format!("cell {} has a material that no old point has", new.mesh.number(cell));
+                Error::input(what, "give a mesh with the groups of the old one")
+            })
+        };
+        seats[cell].iter().map(source).collect()
+    };
+    let all = (0..seats.len()).into_par_iter().map(of).collect::<Result<Vec<_>, Error>>()?;
+    Ok(all.concat())
+}
+
+/// The old points of each material.
+fn trees(old: &Grid, cloud: &Cloud) -> Vec<RTree<GeomWithData<[f64; 2], usize>>> {
+    let mut points = vec![vec![]; old.material.iter().max().map_or(0, |last| last + 1)];
+    for cell in 0..old.mesh.cells.len() {
+        let corners = old.mesh.corners(cell);
+        let numbered = cloud.of(cell).iter().zip(cloud.first[cell]..);
+        points[old.material[cell]].extend(numbered.map(|(&xi, k)| GeomWithData::new(map::position(&corners, xi), k)));
+    }
+    points.into_iter().map(RTree::bulk_load).collect()
+}
+
+/// Internal variables of the new points, cells in the order of the mesh, points in that of the cloud: `internal` has those of
+/// the old `places` in that order, `count` the number of variables of each material.
+pub fn histories(old: &Grid, places: &Cloud, placed: &Placed, internal: &[f64], count: &[usize]) -> Vec<f64> {
+    let mut ranges = Vec::with_capacity(places.len());
+    let mut next = 0;
+    for (cell, &material) in old.material.iter().enumerate() {
+        for _ in places.of(cell) {
+            ranges.push(next..next + count[material]);
+            next += count[material];
+        }
+    }
+    placed.source.iter().flat_map(|&point| &internal[ranges[point].clone()]).copied().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloud::{Layout, seed};
+    use crate::mesh::rectangle;
+    use crate::regrid::same_cells;
+
+    const JITTER: Layout = Layout::Jitter { seed: 3, amount: 0.4 };
+
+    struct Case {
+        old: Mesh,
+        cloud: Cloud,
+        new: Mesh,
+    }
+
+    fn placed(case: &Case, policy: Policy) -> (Placed, Vec<Option<usize>>) {
+        let material = [vec![0; case.old.cells.len()], vec![0; case.new.cells.len()]];
+        let (old, new) =
+            (Grid { mesh: &case.old, material: &material[0] }, Grid { mesh: &case.new, material: &material[1] });
+        let same = same_cells(&old, &new);
+        let fresh = seed(Layout::Paper, 3, case.new.cells.len());
+        let line = Line::new(2);
+        let (limits, virtual_points) = (Limits::of_degree(2), &[][..]);
+        let demand = Demand {
+            line: &line,
+            policy,
+            fresh: &fresh,
+            samples: true,
+            limits: &limits,
+            virtual_points,
+            histories: true,
+        };
+        (place(&old, &case.cloud, &new, &same, &demand).unwrap(), same)
+    }
+
+    fn positions(mesh: &Mesh, cloud: &Cloud) -> Vec<[f64; 2]> {
+        let of = |cell: usize| cloud.of(cell).iter().map(move |&xi| map::position(&mesh.corners(cell), xi));
+        (0..mesh.cells.len()).flat_map(of).collect()
+    }
+
+    /// 8 x 8 cells with a dense cloud, and 8 x 8 cells of which a column is cut in two.
+    fn case(layout: Layout, k: usize) -> Case {
+        let old = rectangle([1.0, 1.0], [8, 8]).unwrap();
+        let mut new = rectangle([1.0, 1.0], [9, 8]).unwrap();
+        new.nodes.iter_mut().enumerate().for_each(|(node, x)| {
+            x[0] = [0.0, 0.125, 0.25, 0.375, 0.4375, 0.5, 0.625, 0.75, 0.875, 1.0][node % 10];
+        });
+        Case { cloud: seed(layout, k, 64), old, new }
+    }
+
+    #[test]
+    fn the_same_grid_keeps_its_cloud_to_the_bit() {
+        for policy in Policy::NAMES.iter().map(|(_, policy)| *policy) {
+            let same = Case { new: case(JITTER, 3).old, ..case(JITTER, 3) };
+            let (placed, _) = placed(&same, policy);
+            assert_eq!(placed.cloud, same.cloud);
+            assert_eq!(placed.source, (0..same.cloud.len()).collect::<Vec<_>>());
+            assert!(placed.kept.iter().all(|kept| *kept));
+        }
+    }
+
+    #[test]
+    fn points_stay_where_they_are_and_keep_their_histories_to_the_bit() {
+        // 8 x 8 jittered points a cell: 32 in each half, more than 9.
+        let case = case(JITTER, 8);
+        let (placed, same) = placed(&case, Policy::Keep);
+        let (before, after) = (positions(&case.old, &case.cloud), positions(&case.new, &placed.cloud));
+        assert_eq!((after.len(), placed.outside), (before.len(), 0));
+        let material = vec![0; 64];
+        let internal: Vec<f64> = (0..2 * before.len()).map(|k| (k as f64).sin()).collect();
+        let moved = histories(&Grid { mesh: &case.old, material: &material }, &case.cloud, &placed, &internal, &[2]);
+        for (p, &old) in placed.source.iter().enumerate() {
+            assert!(placed.kept[p]);
+            // Located to 2^-41 of the cell.
+            let gap = (after[p][0] - before[old][0]).hypot(after[p][1] - before[old][1]);
+            assert!(gap < 1e-12, "{gap:e}");
+            assert_eq!(moved[2 * p..2 * p + 2], internal[2 * old..2 * old + 2]);
+        }
+        let mut all = placed.source.clone();
+        all.sort_unstable();
+        assert_eq!(all, (0..before.len()).collect::<Vec<_>>());
+        for (cell, twin) in same.iter().enumerate().filter_map(|(cell, same)| Some((cell, (*same)?))) {
+            assert_eq!(placed.cloud.of(cell), case.cloud.of(twin));
+        }
+    }
+
+    #[test]
+    fn cells_that_cannot_carry_their_points_get_gauss_nodes_with_the_nearest_histories() {
+        // 3 x 3 points: a half has 3 or 6 of them, degree 2 needs 9.
+        let case = case(Layout::Paper, 3);
+        let (placed, same) = placed(&case, Policy::Keep);
+        let (before, after) = (positions(&case.old, &case.cloud), positions(&case.new, &placed.cloud));
+        for cell in 0..72 {
+            let points = placed.cloud.first[cell]..placed.cloud.first[cell + 1];
+            if same[cell].is_some() {
+                assert!(placed.kept[points.clone()].iter().all(|kept| *kept));
+                continue;
+            }
+            assert_eq!(placed.cloud.of(cell), Line::new(2).nodes());
+            for p in points {
+                let distance = |k: usize| (after[p][0] - before[k][0]).hypot(after[p][1] - before[k][1]);
+                let nearest = (0..before.len()).map(distance).fold(f64::INFINITY, f64::min);
+                assert!(!placed.kept[p] && distance(placed.source[p]) <= nearest);
+            }
+        }
+    }
+
+    #[test]
+    fn enriched_cells_keep_their_points_and_crowded_ones_are_thinned() {
+        let case = case(Layout::Paper, 3);
+        let (few, same) = placed(&case, Policy::Enrich);
+        for cell in (0..72).filter(|&cell| same[cell].is_none()) {
+            let points = few.cloud.first[cell]..few.cloud.first[cell + 1];
+            let kept = few.kept[points.clone()].iter().filter(|kept| **kept).count();
+            assert!(points.len() >= 9 && kept >= 3, "{kept} of {}", points.len());
+        }
+        let dense = self::case(JITTER, 8);
+        let (many, same) = placed(&dense, Policy::Enrich);
+        for cell in (0..72).filter(|&cell| same[cell].is_none()) {
+            let points = many.cloud.first[cell]..many.cloud.first[cell + 1];
+            assert!(points.len() <= 18 && many.kept[points].iter().all(|kept| *kept));
+        }
+    }
+
+    #[test]
+    fn a_layout_fills_new_cells_and_leaves_the_others() {
+        let case = case(JITTER, 3);
+        let (placed, same) = placed(&case, Policy::Layout);
+        let fresh = seed(Layout::Paper, 3, 72);
+        for cell in 0..72 {
+            let wanted = same[cell].map_or(fresh.of(cell), |twin| case.cloud.of(twin));
+            assert_eq!(placed.cloud.of(cell), wanted);
+        }
+    }
+}
