@@ -111,8 +111,6 @@ degree = 1
 method = "ader-dgmpm"
 [time]
 end = 1.0
-[[output]]
-kind = "ledger"
 "#;
 
 struct March {
@@ -224,9 +222,10 @@ fn kernels_agree_to_rounding() {
     for method in METHODS {
         let of = |kernel| March::new(&[&format!("scheme.method={method}"), "scheme.degree=2"], kernel).steps(50);
         let (widest, portable) = (of(Kernel::widest()), of(Kernel::Portable));
-        for (i, (a, b)) in as_f64(&widest.state.u).iter().zip(as_f64(&portable.state.u)).enumerate() {
+        let u = |march: &March| march.state.unpack(&march.scheme.operators.blocks, 9);
+        for (i, (a, b)) in u(&widest).iter().zip(u(&portable)).enumerate() {
             // 50 steps of some 1e-15, of F of size 1 and p of size rho0 50 m/s.
-            let size = if (i / 8 / 9) % 6 < 4 { 1.0 } else { 4e5 };
+            let size = if (i / 9) % 6 < 4 { 1.0 } else { 4e5 };
             assert!((a - b).abs() < 1e-12 * size, "{method}: {a} {b}");
         }
         for (a, b) in widest.internal().iter().flatten().zip(portable.internal().iter().flatten()) {
@@ -265,7 +264,8 @@ fn a_run_goes_on_bit_for_bit_from_what_a_snapshot_holds() {
         let blocks = &other.scheme.operators.blocks;
         other.state = State { time: snapshot.time, step: snapshot.step, ..State::pack(blocks, 4, 6, &snapshot.u) };
         other.scheme.set_internal(&mut other.state, &snapshot.internal);
-        assert!(other.bits() == half.bits() && other.steps(20).bits() == straight.bits(), "{method}");
+        assert!(other.bits() == half.bits(), "{method}");
+        assert!(other.steps(20).bits() == straight.bits(), "{method}: on from there");
     }
 }
 
@@ -328,8 +328,8 @@ fn elastic_cells_hold_nothing_and_plastic_ones_what_their_points_need() {
     let virgin = scheme.virgin_internal();
     assert_eq!((virgin.len(), scheme.internal_of(&state)), (5 * points, virgin.clone()));
     assert_eq!((&scheme.places().first, scheme.places().xi.len()), (&cloud.first, cloud.xi.len()));
-    // 10 plastic cells are two blocks of at most 6 points: elastic blocks take no memory.
-    assert_eq!(state.internal.len(), 2 * 6 * 5);
+    // 10 plastic cells are two blocks, of cells with at most 6 and 5 points: elastic blocks take no memory.
+    assert_eq!(state.internal.len(), (6 + 5) * 5);
     let numbers: Vec<f64> = (0..virgin.len()).map(|i| i as f64).collect();
     scheme.set_internal(&mut state, &numbers);
     assert_eq!(scheme.internal_of(&state), numbers);

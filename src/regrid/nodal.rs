@@ -27,14 +27,14 @@ impl<const M: usize> Nodal<M> {
     pub fn at(&self, x: f64) -> [f64; M] {
         let mut out = self.scale;
         let mut below = 1.0;
-        for k in 0..M {
-            out[k] *= below;
-            below *= x - self.nodes[k];
+        for (out, node) in out.iter_mut().zip(self.nodes) {
+            *out *= below;
+            below *= x - node;
         }
         let mut above = 1.0;
-        for k in (0..M).rev() {
-            out[k] *= above;
-            above *= x - self.nodes[k];
+        for (out, node) in out.iter_mut().zip(self.nodes).rev() {
+            *out *= above;
+            above *= x - node;
         }
         out
     }

@@ -343,9 +343,9 @@ mod tests {
         let case = case(Layout::Paper, 3);
         let (placed, same) = placed(&case, Policy::Keep);
         let (before, after) = (positions(&case.old, &case.cloud), positions(&case.new, &placed.cloud));
-        for cell in 0..72 {
+        for (cell, same) in same.iter().enumerate() {
             let points = placed.cloud.first[cell]..placed.cloud.first[cell + 1];
-            if same[cell].is_some() {
+            if same.is_some() {
                 assert!(placed.kept[points.clone()].iter().all(|kept| *kept));
                 continue;
             }
@@ -380,8 +380,8 @@ mod tests {
         let case = case(JITTER, 3);
         let (placed, same) = placed(&case, Policy::Layout);
         let fresh = seed(Layout::Paper, 3, 72);
-        for cell in 0..72 {
-            let wanted = same[cell].map_or(fresh.of(cell), |twin| case.cloud.of(twin));
+        for (cell, same) in same.iter().enumerate() {
+            let wanted = same.map_or(fresh.of(cell), |twin| case.cloud.of(twin));
             assert_eq!(placed.cloud.of(cell), wanted);
         }
     }

@@ -125,7 +125,7 @@ impl Scene {
         let lines = lines.ok_or("the present mesh is not a grid of lines of one group")?.lines;
         let thin = |lines: &[f64]| -> std::result::Result<Vec<f64>, String> {
             let cells = lines.len() - 1;
-            if cells % k != 0 {
+            if !cells.is_multiple_of(k) {
                 return Err(format!("{cells} cells cannot be joined by {k}"));
             }
             Ok(lines.iter().step_by(k).copied().collect())
