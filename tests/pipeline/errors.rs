@@ -122,7 +122,7 @@ fn a_cloud_of_another_mesh_is_refused() {
     bench.run("seed case.toml --out cloud.h5");
     let message = bench.fail(2, "solve case.toml --cloud cloud.h5 --set mesh.rectangle.cells=[4,3]");
     assert!(message.contains("cloud.h5: the points were seeded on another mesh"), "{message}");
-    let message = bench.fail(2, "run case.toml --set cloud.per_direction=1");
+    let message = bench.fail(2, "preprocess case.toml --strict --set cloud.per_direction=1");
     assert!(message.contains("cell"), "{message}");
 }
 
