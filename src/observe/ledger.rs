@@ -23,8 +23,11 @@ const COLUMNS: [&str; 11] = [
 /// Behind those, where a law has memory: what plastic flow has dissipated since the material was virgin.
 const PLASTIC: &str = "plastic_dissipation";
 
+/// Behind all others, where a scene has regrids: what they have lost since the start of the run.
+const REGRIDS: &str = "regrid_dissipation";
+
 /// Columns of the balance, behind the others; all but the last cumulated since the start of the run.
-const BALANCE: [&str; 8] = [
+const BALANCE: [&str; 7] = [
     "boundary_work",
     "source_work",
     "flux_dissipation",
@@ -32,26 +35,38 @@ const BALANCE: [&str; 8] = [
     "curl_dissipation",
     "remainder",
     "angular_momentum",
-    "regrid_dissipation",
 ];
+
+/// What a ledger has beside energy, momentum and health.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Contents {
+    /// What plastic flow has dissipated.
+    pub plastic: bool,
+    /// The columns of [`Balance`].
+    pub balance: bool,
+    /// With those, what regrids have lost.
+    pub regrids: bool,
+}
 
 /// Writes a row each time it looks. Energies in J, momenta in kg m/s and kg m^2/s, per metre of thickness.
 pub struct Ledger {
     schedule: Schedule,
-    balance: bool,
-    plastic: bool,
+    contents: Contents,
     table: Table,
 }
 
 impl Ledger {
-    /// Starts `path` with its header; with `plastic` and `balance` it has the column of plastic dissipation and those of
-    /// [`Balance`], too.
+    /// Starts `path` with its header.
     ///
     /// # Errors
     /// Where the file cannot be made.
-    pub fn create(path: &Path, schedule: Schedule, plastic: bool, balance: bool) -> Result<Self, Error> {
-        let (memory, more) = (if plastic { &[PLASTIC][..] } else { &[] }, if balance { &BALANCE[..] } else { &[] });
-        Ok(Self { schedule, balance, plastic, table: Table::create(path, &[&COLUMNS[..], memory, more].concat())? })
+    pub fn create(path: &Path, schedule: Schedule, contents: Contents) -> Result<Self, Error> {
+        let Contents { plastic, balance, regrids } = contents;
+        let mut columns = COLUMNS.to_vec();
+        columns.extend(plastic.then_some(PLASTIC));
+        columns.extend(BALANCE.iter().filter(|_| balance));
+        columns.extend((balance && regrids).then_some(REGRIDS));
+        Ok(Self { schedule, contents, table: Table::create(path, &columns)? })
     }
 }
 
@@ -65,13 +80,12 @@ fn columns(balance: &Balance, totals: &Totals) -> [f64; BALANCE.len()] {
         balance.curl_dissipation,
         balance.remainder(totals.accounted()),
         totals.angular_momentum.unwrap_or(f64::NAN),
-        balance.regrid_dissipation,
     ]
 }
 
 impl Observer for Ledger {
     fn wants_balance(&self) -> bool {
-        self.balance
+        self.contents.balance
     }
 
     fn schedule(&mut self) -> &mut Schedule {
@@ -93,8 +107,11 @@ impl Observer for Ledger {
             totals.max_curl,
             view.survey.fastest,
         ];
-        row.extend(self.plastic.then(|| totals.plastic.unwrap_or(0.0)));
-        row.extend(view.balance.filter(|_| self.balance).iter().flat_map(|balance| columns(balance, &totals)));
+        row.extend(self.contents.plastic.then(|| totals.plastic.unwrap_or(0.0)));
+        if let Some(balance) = view.balance.filter(|_| self.contents.balance) {
+            row.extend(columns(balance, &totals));
+            row.extend(self.contents.regrids.then_some(balance.regrid_dissipation));
+        }
         self.table.push(&row)?;
         // Row by row on the disk: a run that dies leaves its history.
         self.table.flush()

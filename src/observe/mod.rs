@@ -10,7 +10,7 @@ mod snapshots;
 mod solution;
 
 pub use fields::Field;
-pub use ledger::Ledger;
+pub use ledger::{Contents, Ledger};
 pub use line::{Line, Outside, Samples};
 pub use schedule::{Schedule, When};
 pub use snapshots::{Snapshots, take, write};

@@ -11,7 +11,7 @@ use crate::io::{gmsh, mesh_file, store};
 use crate::lane::Kernel;
 use crate::material::Law;
 use crate::mesh::{self, Link, Mesh};
-use crate::observe::{Field, Ledger, Line, Observer, Outside, Samples, Schedule, Snapshots};
+use crate::observe::{Contents, Field, Ledger, Line, Observer, Outside, Samples, Schedule, Snapshots};
 use crate::operators::{Needs, Operators, Sampling};
 use crate::run::{Folder, Settings};
 use crate::source::{self, BodyForce};
@@ -272,12 +272,14 @@ impl Scene {
     pub fn observers(&self, mesh: &Mesh, folder: &Folder) -> Result<Vec<Box<dyn Observer>>> {
         let material = self.material_of_cells(mesh);
         let plastic = self.build_laws().iter().any(|law| !law.internal().is_empty());
+        let contents = Contents { plastic, regrids: !self.regrids.is_empty(), balance: false };
         let mut out: Vec<Box<dyn Observer>> = Vec::new();
         for output in &self.outputs {
             let schedule = schedule(output);
             out.push(match (output.what, samples(output)) {
                 (What::Ledger { balance }, _) => {
-                    Box::new(Ledger::create(&folder.ledger(), schedule.with_end(), plastic, balance)?)
+                    let contents = Contents { balance, ..contents };
+                    Box::new(Ledger::create(&folder.ledger(), schedule.with_end(), contents)?)
                 }
                 (_, Some(samples)) => {
                     Box::new(Line::create(&folder.line(&output.name), mesh, &material, &samples, schedule)?)
@@ -287,7 +289,7 @@ impl Scene {
         }
         if !self.outputs.iter().any(|output| matches!(output.what, What::Ledger { .. })) {
             let schedule = Schedule::new(crate::observe::When::EverySteps(LEDGER_STEPS), false).with_end();
-            out.push(Box::new(Ledger::create(&folder.ledger(), schedule, plastic, false)?));
+            out.push(Box::new(Ledger::create(&folder.ledger(), schedule, contents)?));
         }
         Ok(out)
     }
