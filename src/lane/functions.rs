@@ -28,7 +28,7 @@ fn log_series<L: Lane>(z: L) -> L {
     sum * z
 }
 
-/// ln x for normal x > 0, to 1 ulp (measured: 0.9); garbage elsewhere.
+/// ln x for normal x > 0, within 1 ulp of that of std; garbage elsewhere.
 ///
 /// x = 2^k (1 + f), 1 + f in sqrt(1/2) .. sqrt(2); ln x = k ln 2 + f - (f^2/2 - s (f^2/2 + R)) as in fdlibm.
 #[inline(always)]
@@ -41,7 +41,7 @@ pub fn ln<L: Lane>(x: L) -> L {
     k.mul_add(L::splat(LN_2[0]), f - (half - small))
 }
 
-/// exp x for |x| <= 700, to 1 ulp (measured: 0.9); garbage beyond.
+/// exp x for |x| <= 700, within 1 ulp of that of std; garbage beyond.
 ///
 /// x = k ln 2 + r, |r| <= ln 2 / 2; the Taylor polynomial of degree 13, whose rest is below 5e-18.
 #[inline(always)]
@@ -59,7 +59,7 @@ pub fn exp<L: Lane>(x: L) -> L {
     (L::splat(1.0) + (r + rest)) * k.power_of_two()
 }
 
-/// atanh(q) / q for z = q^2, 0 <= z < 1, to 2 ulp (measured: 1.6): smooth in z at 0, where it is 1.
+/// atanh(q) / q for z = q^2, 0 <= z < 1, to 4 ulp: smooth in z at 0, where it is 1.
 ///
 /// (1 + q)/(1 - q) = 2^k m: atanh q = k ln 2 / 2 + atanh s with s = (m - 1)/(m + 1), and s = q where k = 0.
 #[inline(always)]
@@ -130,6 +130,7 @@ mod tests {
             }
         }
         numbers.iter().for_each(|&x| see(x, function.of(x)));
+        println!("{worst:.2} ulp");
         worst
     }
 
@@ -163,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn atanh_over_its_argument_is_exact_to_3_ulp_from_0_to_1() {
+    fn atanh_over_its_argument_is_exact_to_4_ulp_from_0_to_1() {
         let expected = |z: f64| {
             let q = z.sqrt();
             // The series where the quotient of ln_1p loses digits. (1 - q does, too: 1 - z is exact where it is small.)
@@ -172,7 +173,8 @@ mod tests {
         // Up to 1 - z = 1e-3, eigenvalues 4000 to 1.
         for numbers in [sweep(0.0, 0.999, |z| z), sweep(-300.0, -3e-4, |e| 10f64.powf(e))] {
             let worst = worst(&numbers, Function::AtanhRatio, expected);
-            assert!(worst <= 6.0, "{worst}");
+            // Measured 3 and 4, of which the expression for comparison has its part.
+            assert!(worst <= 4.0, "{worst}");
         }
         assert_eq!(atanh_ratio(0.0), 1.0);
     }
