@@ -30,7 +30,7 @@ pub enum Pattern {
 }
 
 /// Candidates of a Poisson disk pattern for each point of a square lattice of spacing 1.25 times the least distance. On 60 x 60
-/// squares 10 leave .92 points for one of the lattice, 20 leave .98, 40 leave 1.02.
+/// squares 10 leave .89 points for one of the lattice, 20 leave .95, 40 leave .99.
 const CANDIDATES: f64 = 20.0;
 
 impl Pattern {
@@ -93,7 +93,9 @@ fn poisson_disk(mesh: &Mesh, member: &[bool], seed: u64, spacing: f64) -> Cloud 
     for candidate in candidates {
         let x = map::position(&mesh.corners(candidate.cell), candidate.xi);
         let [i, j] = square(x);
-        let around = (-2..=2).flat_map(|di| (-2..=2).map(move |dj| [i + di, j + dj]));
+        // The square of its own first: most candidates come too late there.
+        let shifts = [0, -1, 1, -2, 2];
+        let around = shifts.into_iter().flat_map(|di| shifts.map(|dj| [i + di, j + dj]));
         let near = |other: &[f64; 2]| (x[0] - other[0]).hypot(x[1] - other[1]) < spacing;
         if !around.filter_map(|square| taken.get(&square)).any(near) {
             taken.insert([i, j], x);

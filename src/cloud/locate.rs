@@ -219,18 +219,40 @@ pub(crate) fn on_lattice(xi: f64) -> f64 {
 /// Points that a thread locates one after the other, each from the cell of the one before.
 const RUN: usize = 1024;
 
-/// Where each point lies, as [`Locator::find`] says.
+/// Where each point lies, as [`Locator::find`] says. They are taken along a Z-curve, whatever their order: CPU s for 1e6 points
+/// in 6e4 (2.5e5) cells .36 (.50) where they come by cells and .61 (.72) in random order; by the hierarchy alone 1.2 (1.5) and
+/// 2.6 (3.5).
 pub fn find_all(locator: &Locator, points: &[[f64; 2]]) -> Vec<Option<(usize, [f64; 2])>> {
-    let run = |points: &[[f64; 2]]| {
+    let extent = points.iter().fold(Extent::EMPTY, |extent, &x| extent.join(x, x));
+    let mut order: Vec<(u32, usize)> = points.par_iter().map(|&x| z_curve(&extent, x)).zip(0..points.len()).collect();
+    order.par_sort_unstable();
+    let run = |order: &[(u32, usize)]| {
         let mut near = usize::MAX;
-        let found = points.iter().map(|&x| {
-            let found = locator.find_from(near, x);
+        let found = order.iter().map(|&(_, index)| {
+            let found = locator.find_from(near, points[index]);
             near = found.map_or(near, |(cell, _)| cell);
-            found
+            (index, found)
         });
         found.collect::<Vec<_>>()
     };
-    points.par_chunks(RUN).flat_map_iter(run).collect()
+    let found: Vec<_> = order.par_chunks(RUN).flat_map_iter(run).collect();
+    let mut out = vec![None; points.len()];
+    found.into_iter().for_each(|(index, found)| out[index] = found);
+    out
+}
+
+/// The place of a point on a Z-curve through 2^16 x 2^16 parts of an extent: the bits of both coordinates in turn.
+fn z_curve(extent: &Extent, x: [f64; 2]) -> u32 {
+    let spread = |i: usize| {
+        let share = (x[i] - extent.low[i]) / (extent.high[i] - extent.low[i]);
+        // What is no number is 0.
+        let mut bits = (share * 65535.0) as u16 as u32;
+        for (shift, mask) in [(8, 0x00ff_00ff), (4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)] {
+            bits = (bits | bits << shift) & mask;
+        }
+        bits
+    };
+    spread(0) | spread(1) << 1
 }
 
 /// The cloud of located points, and for each of its points the number of the given one. Points of a cell keep their order.

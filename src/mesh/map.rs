@@ -51,6 +51,7 @@ pub fn parent(corners: &Corners, x: [f64; 2]) -> Option<[f64; 2]> {
         [x[0] - at[0], x[1] - at[1]]
     };
     let (mut xi, mut rest) = ([0.5, 0.5], gap([0.5, 0.5]));
+    let mut norm = rest[0].hypot(rest[1]);
     // Quadratic convergence: 4 to 6 steps for ordinary cells; 50 is a ceiling for the thinnest ones.
     for _ in 0..50 {
         let k = inverse(&jacobian(corners, xi));
@@ -61,12 +62,13 @@ pub fn parent(corners: &Corners, x: [f64; 2]) -> Option<[f64; 2]> {
         if step[0].abs().max(step[1].abs()) < 1e-14 {
             return Some([xi[0] + step[0], xi[1] + step[1]]);
         }
-        let (norm, mut scale) = (rest[0].hypot(rest[1]), 1.0);
-        let (next, next_rest) = loop {
+        let mut scale = 1.0;
+        (xi, rest, norm) = loop {
             let next = [xi[0] + scale * step[0], xi[1] + scale * step[1]];
             let next_rest = gap(next);
-            if next_rest[0].hypot(next_rest[1]) < norm {
-                break (next, next_rest);
+            let next_norm = next_rest[0].hypot(next_rest[1]);
+            if next_norm < norm {
+                break (next, next_rest, next_norm);
             }
             scale *= 0.5;
             // No descent: either rounding is reached (the step is tiny), or the point has no image nearby.
@@ -74,7 +76,6 @@ pub fn parent(corners: &Corners, x: [f64; 2]) -> Option<[f64; 2]> {
                 return (step[0].abs().max(step[1].abs()) < 1e-9).then_some(xi);
             }
         };
-        (xi, rest) = (next, next_rest);
     }
     None
 }
