@@ -125,7 +125,7 @@ fn step(bencher: Bencher, method: Method, layout: Option<&str>, degree: usize) {
     let mut next = survey.clone();
     bencher.counter(ItemsCount::new(64_usize)).bench_local(|| {
         scheme.step(&start, dt, &survey, &mut work);
-        scheme.survey(&work.next, &work, &mut next).is_ok()
+        scheme.surveyed(&mut work, &mut next).is_ok()
     });
 }
 

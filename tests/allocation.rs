@@ -119,7 +119,7 @@ impl Run {
 
     fn step(&mut self) {
         self.scheme.step(&self.state, self.dt, &self.survey, &mut self.work);
-        self.scheme.survey(&self.work.next, &self.work, &mut self.next).unwrap();
+        self.scheme.surveyed(&mut self.work, &mut self.next).unwrap();
         std::mem::swap(&mut self.state, &mut self.work.next);
         std::mem::swap(&mut self.survey, &mut self.next);
     }

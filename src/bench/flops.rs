@@ -54,7 +54,7 @@ fn count_step(problem: &Problem) -> Flops {
     let dt = settings.courant * h / survey.fastest;
     let slots = counted::count(|| {
         scheme.step(start, dt, &survey, &mut work);
-        let _ = scheme.survey(&work.next, &work, &mut Survey::default());
+        let _ = scheme.surveyed(&mut work, &mut Survey::default());
     });
     let blocks = scheme.operators.blocks.len() as u64;
     let mean = |c: &Counts| Counts {

@@ -92,7 +92,7 @@ impl Clocked<'_> {
         let Problem { scheme, settings, h, .. } = self.problem;
         let dt = (settings.courant * h / self.survey.fastest).min(settings.end - self.state.time);
         scheme.step(&self.state, dt, &self.survey, &mut self.work);
-        scheme.survey(&self.work.next, &self.work, &mut self.next)?;
+        scheme.surveyed(&mut self.work, &mut self.next)?;
         std::mem::swap(&mut self.state, &mut self.work.next);
         std::mem::swap(&mut self.survey, &mut self.next);
         let phases = self.work.take_phases();

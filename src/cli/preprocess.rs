@@ -134,7 +134,7 @@ fn cost(scheme: &Scheme, state: &State, settings: Settings, h: f64) -> std::resu
         let clock = Instant::now();
         scheme.step(state, dt, &survey, &mut work);
         // What becomes of the first step is for the run to say.
-        let _ = scheme.survey(&work.next, &work, &mut survey.clone());
+        let _ = scheme.surveyed(&mut work, &mut survey.clone());
         clock.elapsed().as_secs_f64()
     };
     // The first trial touches the memory for the first time.

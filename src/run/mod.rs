@@ -129,7 +129,7 @@ impl Run<'_, '_> {
             if (stop - work.next.time).abs() < 1e-9 * dt {
                 work.next.time = stop;
             }
-            self.scheme.survey(&work.next, &work, &mut next).map_err(Stop::Unstable)?;
+            self.scheme.surveyed(&mut work, &mut next).map_err(Stop::Unstable)?;
             std::mem::swap(state, &mut work.next);
             std::mem::swap(&mut survey, &mut next);
             report.count(self.scheme, dt, &survey, &mut work);

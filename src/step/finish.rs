@@ -1,7 +1,9 @@
-//! `finish`: with the neighbours' traces, flux (3), lift (14), and after the last stage the update (13) and LCF.
+//! `finish`: with the neighbours' traces, flux (3), lift (14), and after the last stage the update (13), LCF, the internal
+//! variables and the survey of what has come out.
 
 use super::balance::{self, Sums};
 use super::sums::Terms;
+use super::survey::{Examine, History, Worst};
 use super::volume::{Metric, row, with_nodes};
 use super::{Phase, Scheme, Scratch, Stage, Survey, curl, flux};
 use crate::lane::{F8, Lanes, Work};
@@ -27,12 +29,24 @@ pub(super) struct Block<'a> {
     pub rate: &'a mut [F8],
     /// Traces under way.
     pub traces: flux::Traces<'a>,
-    /// New unknowns of this block (out, after the last stage).
-    pub next: &'a mut [F8],
+    /// What the last stage makes; none before it.
+    pub new: Option<New<'a>>,
     /// Its balance of energy; none where it is off.
     pub sums: Option<&'a mut Sums>,
     /// The thread's arrays.
     pub scratch: &'a mut Scratch,
+}
+
+/// A block after the step (out).
+pub(super) struct New<'a> {
+    /// Its unknowns.
+    pub u: &'a mut [F8],
+    /// Its internal variables.
+    pub internal: &'a mut [F8],
+    /// Its wave speeds.
+    pub speed: &'a mut F8,
+    /// The worst of the blocks so far.
+    pub worst: &'a mut Worst,
 }
 
 impl Block<'_> {
@@ -46,37 +60,38 @@ impl Block<'_> {
         let line = &operators.line;
         with_nodes!(line.m, M => kernel.run(Lift::<'_, M> { line, inverse_mass, lift, rate: self.rate }));
         self.scratch.phases.book(Phase::Flux, &mut clock);
-        if self.stage.number + 1 < self.scheme.stages() {
-            return;
-        }
-        kernel.run(Update(&mut self));
+        let Some(New { u, internal, speed, worst }) = self.new.take() else { return };
+        kernel.run(Update(&mut self, u));
         self.scratch.phases.book(Phase::Corrector, &mut clock);
         if self.scheme.curl_rate.is_some() {
-            kernel.run(Project(&mut self));
+            kernel.run(Project(&mut self, u));
         }
         self.scratch.phases.book(Phase::CurlFree, &mut clock);
+        let Self { scheme, block, scratch, .. } = self;
+        let history = History::Before(scheme.histories.of(&self.state.internal, block), internal);
+        *worst = worst.and(Examine { scheme, block, u, history, scratch }.run(speed));
     }
 }
 
 /// The update (13) of a block.
-struct Update<'a, 'b>(&'a mut Block<'b>);
+struct Update<'a, 'b>(&'a mut Block<'b>, &'a mut [F8]);
 
 impl Work for Update<'_, '_> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        self.0.update::<L>();
+        self.0.update::<L>(self.1);
     }
 }
 
 /// LCF of a block.
-struct Project<'a, 'b>(&'a mut Block<'b>);
+struct Project<'a, 'b>(&'a mut Block<'b>, &'a mut [F8]);
 
 impl Work for Project<'_, '_> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        self.0.project::<L>();
+        self.0.project::<L>(self.1);
     }
 }
 
@@ -88,17 +103,17 @@ impl<'b> Block<'b> {
 
     /// U^(n+1) = U^n + dt sum_s b_s k_s.
     #[inline(always)]
-    fn update<L: Lanes>(&mut self) {
+    fn update<L: Lanes>(&mut self, next: &mut [F8]) {
         let (stride, dt, last) = (self.rate.len(), self.stage.dt, self.stage.number);
         let begin = stride * self.block;
         let factors = (0..last).map(|stage| dt * self.scheme.weight(stage));
         let terms = Terms::new(factors, self.before, stride, stride).and(dt * self.scheme.weight(last), self.rate);
-        terms.add_to::<L>(&self.state.u[begin..begin + stride], self.next);
+        terms.add_to::<L>(&self.state.u[begin..begin + stride], next);
     }
 
     /// LCF with theta = 1 - exp(-alpha c dt / h), c the cell's largest current speed.
     #[inline(always)]
-    fn project<L: Lanes>(&mut self) {
+    fn project<L: Lanes>(&mut self, next: &mut [F8]) {
         let operators = &self.scheme.operators;
         let (Some(rate), Some(curl_free)) = (self.scheme.curl_rate, &operators.curl_free) else { return };
         let (c, h) = (&self.survey.speed[self.block], &operators.geometry.h[self.block]);
@@ -111,13 +126,13 @@ impl<'b> Block<'b> {
         if let Some(sums) = self.sums.as_mut() {
             let variables = law.internal().len();
             self.scheme.histories.at_nodes(&self.state.internal, self.block, variables, &mut nodes.internal);
-            let before = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, self.next, &nodes.internal));
+            let before = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, next, &nodes.internal));
             balance::add(one, before, &mut sums.curl_dissipation);
         }
         let arrays = curl::Arrays { weighted: &mut nodes.weighted, coefficients: &mut nodes.coefficients };
-        curl::project::<L>(&curl_free.pool, self.block, theta, mass, arrays, self.next);
+        curl::project::<L>(&curl_free.pool, self.block, theta, mass, arrays, next);
         if let Some(sums) = self.sums.as_mut() {
-            let after = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, self.next, &nodes.internal));
+            let after = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, next, &nodes.internal));
             balance::add(-one, after, &mut sums.curl_dissipation);
         }
     }

@@ -4,16 +4,14 @@
 //! RK-DGFEM) its nodes, and are never projected. The predictor and every stage integrate the law from their values h_n at
 //! the start of the step, without storing what comes out; the step ends with h_(n+1) = law(F_p^(n+1), h_n).
 
-use super::survey::{Strided, at_points};
-use super::{Phase, Scheme, Scratch, Work as Memory, with_scratch};
+use super::Scheme;
+use super::survey::Strided;
 use crate::cloud::Cloud;
-use crate::lane::{F8, LANES, Lanes, Work};
+use crate::lane::{F8, LANES, Lanes};
 use crate::material::{Internal, Law, MOST_INTERNAL, Material};
 use crate::operators::Operators;
 use crate::state::State;
-use crate::with_law;
 use std::ops::Range;
-use std::sync::Mutex;
 
 /// Where the internal variables of each block lie in [`State::internal`], `[point][variable]`. Nothing where no law has
 /// any.
@@ -55,13 +53,19 @@ impl Histories {
         self.first.last().copied().unwrap_or(0)
     }
 
+    /// Where those of a block lie; nowhere for an elastic one.
+    #[inline]
+    pub fn range(&self, block: usize) -> Range<usize> {
+        match self.first.get(block..block + 2) {
+            Some(&[from, to]) => from..to,
+            _ => 0..0,
+        }
+    }
+
     /// Those of a block, none for an elastic one.
     #[inline]
     pub fn of<'a>(&self, internal: &'a [F8], block: usize) -> &'a [F8] {
-        match self.first.get(block..block + 2) {
-            Some(&[from, to]) => &internal[from..to],
-            _ => &[],
-        }
+        &internal[self.range(block)]
     }
 
     /// The point whose history stands for a node, in each lane.
@@ -114,36 +118,9 @@ pub fn recall<L: Lanes, M: Material>(_: &M, block: &[F8], point: usize) -> Inter
     out
 }
 
-/// The end of a step in one block.
-struct Remember<'a> {
-    scheme: &'a Scheme,
-    block: usize,
-    /// The new unknowns of the block.
-    u: &'a [F8],
-    /// h_n
-    before: &'a [F8],
-    /// h_(n+1), out.
-    after: &'a mut [F8],
-    scratch: &'a mut Scratch,
-}
-
-impl Work for Remember<'_> {
-    type Out = ();
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self { scheme, block, u, before, after, scratch } = self;
-        let mut clock = scratch.phases.clock();
-        let points = at_points::<L>(scheme, u, block, &mut scratch.nodes, &mut scratch.points);
-        with_law!(&scheme.laws[scheme.operators.blocks.material[block]], law => {
-            remember::<L, _>(*law, &points, before, after);
-        });
-        scratch.phases.book(Phase::Survey, &mut clock);
-    }
-}
-
 /// h_(n+1) = law(F, h_n) at all points.
 #[inline(always)]
-fn remember<L: Lanes, M: Material>(law: M, points: &Strided, before: &[F8], after: &mut [F8]) {
+pub(super) fn remember<L: Lanes, M: Material>(law: M, points: &Strided, before: &[F8], after: &mut [F8]) {
     let variables = M::INTERNAL.len();
     if variables == 0 {
         return;
@@ -157,49 +134,7 @@ fn remember<L: Lanes, M: Material>(law: M, points: &Strided, before: &[F8], afte
     }
 }
 
-/// The blocks of a range that are still to be done, and their part of the new internal variables.
-struct Part<'a> {
-    scheme: &'a Scheme,
-    state: &'a State,
-    u: &'a [F8],
-    scratch: &'a [Mutex<Scratch>],
-    blocks: Range<usize>,
-    after: &'a mut [F8],
-}
-
-impl Part<'_> {
-    /// Halves until a block is left: numbers of blocks differ in length, and nothing may be allocated.
-    fn run(self) {
-        let Self { scheme, state, u, scratch, blocks, after } = self;
-        if after.is_empty() {
-            return;
-        }
-        let Range { start, end } = blocks;
-        if end - start > 1 {
-            let middle = start.midpoint(end);
-            let first = &scheme.histories.first;
-            let (left, right) = after.split_at_mut(first[middle] - first[start]);
-            let part = |blocks, after| Part { scheme, state, u, scratch, blocks, after };
-            let (left, right) = (part(start..middle, left), part(middle..end, right));
-            rayon::join(|| left.run(), || right.run());
-            return;
-        }
-        let stride = state.components * scheme.operators.nodes();
-        let (u, before) = (&u[stride * start..stride * end], scheme.histories.of(&state.internal, start));
-        with_scratch(scratch, |scratch| {
-            scheme.kernel.run(Remember { scheme, block: start, u, before, after, scratch });
-        });
-    }
-}
-
 impl Scheme {
-    /// h_(n+1) = law(F_p^(n+1), h_n) into `memory.next`, from the state at t_n.
-    pub(super) fn remember(&self, state: &State, memory: &mut Memory) {
-        let blocks = 0..self.operators.blocks.len();
-        let (State { u, internal, .. }, scratch) = (&mut memory.next, &memory.scratch[..]);
-        Part { scheme: self, state, u, scratch, blocks, after: internal }.run();
-    }
-
     /// The internal variables of a point of a lane; what virgin material has, where the law has none.
     pub(super) fn internal_at(&self, state: &State, block: usize, lane: usize, point: usize) -> Internal<f64> {
         let law = &self.laws[self.operators.blocks.material[block]];

@@ -82,6 +82,8 @@ pub struct Scheme {
 pub struct Work {
     /// The new state, once the step is done; the caller swaps it in if it is healthy.
     pub next: State,
+    /// Its wave speeds, see [`Survey`].
+    speed: Vec<F8>,
     /// Rates and traces under way.
     tiles: schedule::Tiles,
     /// The balance of the step, by block; none where nobody asks for it.
@@ -116,6 +118,7 @@ impl Work {
         };
         Self {
             next: state.clone(),
+            speed: vec![F8::ZERO; operators.blocks.len()],
             tiles: schedule::Tiles::new(scheme, state.components * operators.nodes()),
             balance: None,
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
@@ -167,7 +170,7 @@ impl Method {
 }
 
 impl Scheme {
-    /// Advances `state` by `dt` into `work.next`. `survey` is that of `state`.
+    /// Advances `state` by `dt` into `work.next`. `survey` is that of `state`; [`Scheme::surveyed`] has that of the result.
     pub fn step(&self, state: &State, dt: f64, survey: &Survey, work: &mut Work) {
         match &self.method {
             Method::Ader { time, .. } => {
@@ -184,9 +187,6 @@ impl Scheme {
                 let stages = tiles::stages(&times, dt);
                 self.run_stages(&stages[..tableau.stages()], state, survey, work);
             }
-        }
-        if !self.histories.is_empty() {
-            self.remember(state, work);
         }
         work.next.time = state.time + dt;
         work.next.step = state.step + 1;

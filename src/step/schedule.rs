@@ -1,12 +1,12 @@
 //! The stages of a step on all blocks, by the plans of [`tiles`].
 
 use super::balance::Sums;
+use super::survey::Worst;
 use super::tiles::{self, Event, Plan};
 use super::{Scheme, Scratch, Stage, Survey, Work, begin, finish, flux, volume, with_scratch};
 use crate::lane::{self, F8};
 use crate::state::State;
-use rayon::iter::Either;
-use rayon::prelude::*;
+use std::sync::Mutex;
 
 /// A tile of blocks with its memory.
 pub(super) struct Tile {
@@ -17,14 +17,12 @@ pub(super) struct Tile {
     traces: Vec<F8>,
     /// The slot of the traces of each block: [stage][block].
     slots: Vec<u32>,
+    /// The worst of its blocks after the last step.
+    worst: Worst,
 }
 
-/// The tiles of a step, of equal size but for the last.
-pub(super) struct Tiles {
-    tiles: Vec<Tile>,
-    /// Blocks of a tile.
-    size: usize,
-}
+/// The tiles of a step.
+pub(super) struct Tiles(Vec<Tile>);
 
 impl Tiles {
     /// For states with `stride` numbers a block, on the current number of threads.
@@ -32,27 +30,32 @@ impl Tiles {
         let (stages, blocks) = (scheme.stages(), &scheme.operators.blocks);
         let graph = tiles::graph(blocks);
         let plans = tiles::plans(&graph, stages, rayon::current_num_threads().max(1));
-        let size = plans.first().map_or(1, |plan| plan.range.len().max(1));
         let numbers = scheme.block_traces(false);
         let tile = |plan: Plan| Tile {
             rates: vec![F8::ZERO; plan.rates * stages * stride],
             traces: vec![F8::ZERO; plan.traces * numbers + 2],
             slots: vec![0; stages * blocks.len()],
+            worst: Worst::NONE,
             plan,
         };
-        Self { tiles: plans.into_iter().map(tile).collect(), size }
+        Self(plans.into_iter().map(tile).collect())
     }
 
     /// Makes room for the numbers that the balance of energy needs.
     pub fn widen(&mut self, scheme: &Scheme) {
-        for tile in &mut self.tiles {
+        for tile in &mut self.0 {
             tile.traces.resize(tile.plan.traces * scheme.block_traces(true) + 2, F8::ZERO);
         }
     }
 
+    /// The worst of all blocks after the last step.
+    pub fn worst(&self) -> Worst {
+        self.0.iter().fold(Worst::NONE, |worst, tile| worst.and(tile.worst))
+    }
+
     /// Numbers of eight lanes held.
     pub fn numbers(&self) -> usize {
-        self.tiles.iter().map(|tile| tile.rates.len() + tile.traces.len()).sum()
+        self.0.iter().map(|tile| tile.rates.len() + tile.traces.len()).sum()
     }
 }
 
@@ -66,10 +69,8 @@ struct Pass<'a> {
     state: &'a State,
     survey: &'a Survey,
     tile: &'a mut Tile,
-    /// New unknowns of the tile.
-    next: &'a mut [F8],
-    /// The balance of its blocks; none where it is off.
-    balance: Option<&'a mut [Sums]>,
+    /// What the step makes of the tile.
+    out: Out<'a>,
     /// That of the blocks around it, which is another's.
     others: Sums,
     scratch: &'a mut Scratch,
@@ -77,6 +78,7 @@ struct Pass<'a> {
 
 impl Pass<'_> {
     fn run(mut self) {
+        self.tile.worst = Worst::NONE;
         for number in 0..self.tile.plan.events.len() {
             let event = self.tile.plan.events[number];
             match event.traces {
@@ -97,7 +99,7 @@ impl Pass<'_> {
         let stride = state.components * scheme.operators.nodes();
         let rates = &mut tile.rates[event.rates as usize * stages.len() * stride..][..stages.len() * stride];
         let (before, now) = rates.split_at_mut(stage.number * stride);
-        let numbers = scheme.block_traces(self.balance.is_some());
+        let numbers = scheme.block_traces(self.out.balance.is_some());
         let work = begin::Block {
             scheme,
             stage,
@@ -106,25 +108,31 @@ impl Pass<'_> {
             before,
             rate: &mut now[..stride],
             traces: &mut tile.traces[1 + slot * numbers..][..numbers],
-            sums: sums_of(&mut self.balance, &tile.plan, &mut self.others, block),
+            sums: sums_of(&mut self.out.balance, &tile.plan, &mut self.others, block),
             scratch: self.scratch,
         };
         work.run();
     }
 
     fn finish(&mut self, event: &Event) {
-        let Self { scheme, stages, state, survey, tile, next, .. } = self;
+        let Self { scheme, stages, state, survey, tile, out, .. } = self;
         let (block, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
         let blocks = scheme.operators.blocks.len();
         let stride = state.components * scheme.operators.nodes();
         let rates = &mut tile.rates[event.rates as usize * stages.len() * stride..][..stages.len() * stride];
         let (before, now) = rates.split_at_mut(stage.number * stride);
         // Blocks around the tile have no last stage.
-        let next = if stage.number + 1 < stages.len() {
-            &mut []
-        } else {
-            &mut next[(block - tile.plan.range.start) * stride..][..stride]
-        };
+        let new = (stage.number + 1 == stages.len()).then(|| {
+            let at = block - tile.plan.range.start;
+            let history = scheme.histories.range(block);
+            let start = scheme.histories.range(tile.plan.range.start).start;
+            finish::New {
+                u: &mut out.u[at * stride..][..stride],
+                internal: &mut out.internal[history.start - start..history.end - start],
+                speed: &mut out.speed[at],
+                worst: &mut tile.worst,
+            }
+        });
         let work = finish::Block {
             scheme,
             stage,
@@ -134,8 +142,8 @@ impl Pass<'_> {
             before,
             rate: &mut now[..stride],
             traces: flux::Traces { all: &tile.traces, slots: &tile.slots[stage.number * blocks..][..blocks] },
-            next,
-            sums: sums_of(&mut self.balance, &tile.plan, &mut self.others, block),
+            new,
+            sums: sums_of(&mut out.balance, &tile.plan, &mut self.others, block),
             scratch: self.scratch,
         };
         work.run();
@@ -153,31 +161,66 @@ fn sums_of<'a>(
     if plan.range.contains(&block) { own.get_mut(block - plan.range.start) } else { Some(others) }
 }
 
-/// The balance of each tile, or for each tile none.
-fn sums(
-    balance: &mut Option<Vec<Sums>>,
-    size: usize,
-    tiles: usize,
-) -> impl IndexedParallelIterator<Item = Option<&mut [Sums]>> {
-    match balance {
-        Some(sums) => Either::Left(sums.par_chunks_mut(size).map(Some)),
-        None => Either::Right((0..tiles).into_par_iter().map(|_| None)),
+/// What a step makes of the blocks of some tiles that follow each other.
+struct Out<'a> {
+    /// New unknowns.
+    u: &'a mut [F8],
+    /// New internal variables.
+    internal: &'a mut [F8],
+    /// New wave speeds.
+    speed: &'a mut [F8],
+    /// The balance of the blocks; none where it is off.
+    balance: Option<&'a mut [Sums]>,
+}
+
+impl<'a> Out<'a> {
+    /// Those of the first `blocks`, with so many internal variables, and the rest.
+    fn split(self, blocks: usize, stride: usize, internal: usize) -> (Self, Self) {
+        let (u, u2) = self.u.split_at_mut(blocks * stride);
+        let (internal, internal2) = self.internal.split_at_mut(internal);
+        let (speed, speed2) = self.speed.split_at_mut(blocks);
+        let (balance, balance2) = self.balance.map(|sums| sums.split_at_mut(blocks)).unzip();
+        (Out { u, internal, speed, balance }, Out { u: u2, internal: internal2, speed: speed2, balance: balance2 })
+    }
+}
+
+/// A step under way.
+#[derive(Clone, Copy)]
+struct Step<'a> {
+    scheme: &'a Scheme,
+    stages: &'a [Stage<'a>],
+    state: &'a State,
+    survey: &'a Survey,
+    scratch: &'a [Mutex<Scratch>],
+}
+
+impl Step<'_> {
+    /// Halves until a tile is left: nothing may be allocated.
+    fn run(self, tiles: &mut [Tile], out: Out) {
+        let Self { scheme, stages, state, survey, scratch } = self;
+        match tiles {
+            [] => {}
+            [tile] => with_scratch(scratch, |scratch| {
+                Pass { scheme, stages, state, survey, tile, out, others: Sums::default(), scratch }.run();
+            }),
+            _ => {
+                let (left, right) = tiles.split_at_mut(tiles.len() / 2);
+                let (start, middle) = (left[0].plan.range.start, right[0].plan.range.start);
+                let first = |block| scheme.histories.range(block).start;
+                let stride = state.components * scheme.operators.nodes();
+                let (one, two) = out.split(middle - start, stride, first(middle) - first(start));
+                rayon::join(|| self.run(left, one), || self.run(right, two));
+            }
+        }
     }
 }
 
 impl Scheme {
     /// All stages of a step.
     pub(super) fn run_stages(&self, stages: &[Stage], state: &State, survey: &Survey, work: &mut Work) {
-        let stride = state.components * self.operators.nodes();
-        let Work { tiles: Tiles { tiles, size }, next, balance, scratch, .. } = work;
-        let balance = sums(balance, *size, tiles.len());
-        let parts = next.u.par_chunks_mut((*size * stride).max(1)).zip(balance);
-        tiles.par_iter_mut().with_max_len(1).zip(parts).for_each(|(tile, (next, balance))| {
-            with_scratch(scratch, |scratch| {
-                let others = Sums::default();
-                Pass { scheme: self, stages, state, survey, tile, next, balance, others, scratch }.run();
-            });
-        });
+        let Work { tiles: Tiles(tiles), next, speed, balance, scratch, .. } = work;
+        let out = Out { u: &mut next.u, internal: &mut next.internal, speed, balance: balance.as_deref_mut() };
+        Step { scheme: self, stages, state, survey, scratch }.run(tiles, out);
     }
 
     /// Asks for what the first stage of a block will read.

@@ -1,11 +1,10 @@
 //! The health of a state: current wave speeds (for dt and LCF), min J, and where stability was lost.
 
-use super::history::recall;
+use super::history::{recall, remember};
 use super::predictor::{self, transfer::ToPoints};
-use super::schedule::AHEAD;
 use super::volume;
 use super::{Phase, Scheme, Scratch, Work as Memory, dense, with_scratch};
-use crate::lane::{Coefficient, F8, Lanes, Work, prefetch};
+use crate::lane::{Coefficient, F8, Lanes, Work};
 use crate::material::Material;
 use crate::operators::{Matrix, PointMatrices, Share};
 use crate::state::State;
@@ -58,6 +57,41 @@ impl std::fmt::Display for LossKind {
     }
 }
 
+/// The worst of some blocks. Minimum and maximum do not depend on the order: same bits for any number of threads.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Worst {
+    /// The first block that lost stability; `usize::MAX` where all are healthy.
+    sick: usize,
+    fastest: f64,
+    min_j: f64,
+}
+
+impl Worst {
+    /// That of no block.
+    pub const NONE: Self = Self { sick: usize::MAX, fastest: 0.0, min_j: f64::INFINITY };
+
+    /// That of a block with so many real cells.
+    fn of(found: &Found, block: usize, cells: usize) -> Self {
+        let real = ..cells;
+        let healthy =
+            found.poison.0[real].iter().all(|x| *x == 0.0) && found.min_j.0[real].iter().all(|j| *j > 0.0);
+        Self {
+            sick: if healthy { usize::MAX } else { block },
+            fastest: found.speed.0[real].iter().fold(0.0, |a, b| a.max(*b)),
+            min_j: found.min_j.0[real].iter().fold(f64::INFINITY, |a, b| a.min(*b)),
+        }
+    }
+
+    /// That of both.
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            sick: self.sick.min(other.sick),
+            fastest: self.fastest.max(other.fastest),
+            min_j: self.min_j.min(other.min_j),
+        }
+    }
+}
+
 impl Scheme {
     /// Surveys `state` into `out`.
     ///
@@ -65,24 +99,32 @@ impl Scheme {
     /// The first cell (in the order of the blocks) that lost stability.
     pub fn survey(&self, state: &State, memory: &Memory, out: &mut Survey) -> Result<(), Loss> {
         let blocks = &self.operators.blocks;
+        let stride = state.components * self.operators.nodes();
         out.speed.resize(blocks.len(), F8::ZERO);
         let worst = out.speed.par_iter_mut().enumerate().map(|(block, speed)| {
             with_scratch(&memory.scratch, |scratch| {
-                let found = self.kernel.run(Block { scheme: self, state, block, scratch });
-                *speed = found.speed;
-                let real = ..blocks.count[block];
-                let healthy =
-                    found.poison.0[real].iter().all(|x| *x == 0.0) && found.min_j.0[real].iter().all(|j| *j > 0.0);
-                let fastest = found.speed.0[real].iter().fold(0.0_f64, |a, b| a.max(*b));
-                let min_j = found.min_j.0[real].iter().fold(f64::INFINITY, |a, b| a.min(*b));
-                (if healthy { usize::MAX } else { block }, fastest, min_j)
+                let u = &state.u[stride * block..stride * (block + 1)];
+                let internal = self.histories.of(&state.internal, block);
+                let work = Examine { scheme: self, block, u, history: History::Now(internal), scratch };
+                work.run(speed)
             })
         });
-        // Minimum and maximum do not depend on the order: same bits for any number of threads.
-        let (sick, fastest, min_j) =
-            worst.reduce(|| (usize::MAX, 0.0, f64::INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1), a.2.min(b.2)));
-        (out.fastest, out.min_j) = (fastest, min_j);
-        if sick == usize::MAX { Ok(()) } else { Err(self.find_loss(state, sick)) }
+        self.judge(worst.reduce(|| Worst::NONE, Worst::and), state, out)
+    }
+
+    /// The survey of the state that the last step made, into `out`, from what the step saw on its way.
+    ///
+    /// # Errors
+    /// As [`Scheme::survey`].
+    pub fn surveyed(&self, memory: &mut Memory, out: &mut Survey) -> Result<(), Loss> {
+        std::mem::swap(&mut out.speed, &mut memory.speed);
+        memory.speed.resize(out.speed.len(), F8::ZERO);
+        self.judge(memory.tiles.worst(), &memory.next, out)
+    }
+
+    fn judge(&self, worst: Worst, state: &State, out: &mut Survey) -> Result<(), Loss> {
+        (out.fastest, out.min_j) = (worst.fastest, worst.min_j);
+        if worst.sick == usize::MAX { Ok(()) } else { Err(self.find_loss(state, worst.sick)) }
     }
 
     /// Names cell and point in a block that is known to be sick.
@@ -129,37 +171,65 @@ impl Scheme {
     }
 }
 
-struct Block<'a> {
-    scheme: &'a Scheme,
-    state: &'a State,
-    block: usize,
-    scratch: &'a mut Scratch,
+/// The internal variables of a block.
+pub(super) enum History<'a> {
+    /// Those of the state that is looked at.
+    Now(&'a [F8]),
+    /// Those of the state before the step; those after it are made here: h_(n+1) = law(F, h_n).
+    Before(&'a [F8], &'a mut [F8]),
 }
 
-struct Found {
+/// Looks at a block: wave speeds and J at its points.
+pub(super) struct Examine<'a> {
+    /// The scheme.
+    pub scheme: &'a Scheme,
+    /// The block.
+    pub block: usize,
+    /// Its unknowns.
+    pub u: &'a [F8],
+    /// Its internal variables.
+    pub history: History<'a>,
+    /// The thread's arrays.
+    pub scratch: &'a mut Scratch,
+}
+
+impl Examine<'_> {
+    /// The worst of the block; its speeds into `speed`.
+    pub fn run(self, speed: &mut F8) -> Worst {
+        let (scheme, block) = (self.scheme, self.block);
+        let found = scheme.kernel.run(self);
+        *speed = found.speed;
+        Worst::of(&found, block, scheme.operators.blocks.count[block])
+    }
+}
+
+pub(super) struct Found {
     speed: F8,
     min_j: F8,
     /// 0, or NaN where a number or a speed is not finite.
     poison: F8,
 }
 
-impl Work for Block<'_> {
+impl Work for Examine<'_> {
     type Out = Found;
     #[inline(always)]
     fn run<L: Lanes>(self) -> Found {
-        let mut clock = self.scratch.phases.clock();
-        let operators = &self.scheme.operators;
-        let stride = self.state.components * operators.nodes();
-        let u = &self.state.u[stride * self.block..stride * (self.block + 1)];
-        if let Some(later) = self.state.u.get(stride * (self.block + AHEAD)..stride * (self.block + AHEAD + 1)) {
-            prefetch(later);
-        }
-        let law = &self.scheme.laws[operators.blocks.material[self.block]];
-        let n = operators.nodes();
-        let internal = self.scheme.histories.of(&self.state.internal, self.block);
-        let points = at_points::<L>(self.scheme, u, self.block, &mut self.scratch.nodes, &mut self.scratch.points);
-        let found = with_law!(law, law => examine::<L, _>(law, &points, internal, &u[4 * n..]));
-        self.scratch.phases.book(Phase::Survey, &mut clock);
+        let Self { scheme, block, u, history, scratch } = self;
+        let mut clock = scratch.phases.clock();
+        let law = &scheme.laws[scheme.operators.blocks.material[block]];
+        let others = &u[4 * scheme.operators.nodes()..];
+        let points = at_points::<L>(scheme, u, block, &mut scratch.nodes, &mut scratch.points);
+        let found = with_law!(law, law => {
+            let internal = match history {
+                History::Now(internal) => internal,
+                History::Before(before, after) => {
+                    remember::<L, _>(*law, &points, before, after);
+                    after
+                }
+            };
+            examine::<L, _>(law, &points, internal, others)
+        });
+        scratch.phases.book(Phase::Survey, &mut clock);
         found
     }
 }
@@ -186,7 +256,7 @@ impl Strided<'_> {
 
 /// F of the unknowns of a block at its points; at its nodes, where there are none.
 #[inline(always)]
-pub(super) fn at_points<'a, L: Lanes>(
+fn at_points<'a, L: Lanes>(
     scheme: &Scheme,
     u: &'a [F8],
     block: usize,
