@@ -111,7 +111,7 @@ impl Blocks {
         Self::of_lists(material, links, &lists, &order::narrow(&graph))
     }
 
-    /// Sum over all blocks of how far their farthest neighbour is.
+    /// How far the farthest neighbour of a block is, for the middle one of all blocks, as in [`order::narrow`].
     fn reach(&self) -> usize {
         let of = |(block, neighbours): (usize, &[[Neighbour; LANES]; 4])| {
             let far = neighbours.iter().flatten().map(|neighbour| match neighbour {
@@ -120,7 +120,7 @@ impl Blocks {
             });
             far.max().unwrap_or(0)
         };
-        self.neighbours.iter().enumerate().map(of).sum()
+        order::middle(self.neighbours.iter().enumerate().map(of))
     }
 
     /// Blocks of `lists` of cells of one law, in an `order`.

@@ -1,20 +1,28 @@
 //! Orders of the nodes of a graph in which neighbours are near.
 
-/// The nodes in their own order, or in that of Cuthill and McKee where its bandwidth is smaller.
+/// The nodes in their own order, or in that of Cuthill and McKee where neighbours are nearer there: by the middle one of all
+/// nodes, since the seams of periodic edges are far apart in the best of orders, and few.
 pub fn narrow(graph: &[Vec<usize>]) -> Vec<usize> {
     let own: Vec<usize> = (0..graph.len()).collect();
     let other = cuthill_mckee(graph);
     let mut place = own.clone();
     other.iter().enumerate().for_each(|(k, &node)| place[node] = k);
-    if bandwidth(graph, &place) < bandwidth(graph, &own) { other } else { own }
+    if reach(graph, &place) < reach(graph, &own) { other } else { own }
 }
 
-/// Largest difference of the places of two neighbours, `place` being that of each node of a graph.
-fn bandwidth(graph: &[Vec<usize>], place: &[usize]) -> usize {
+/// How far the farthest neighbour of a node is, for the middle one of all nodes, `place` being that of each node of a graph.
+fn reach(graph: &[Vec<usize>], place: &[usize]) -> usize {
     let of = |(node, neighbours): (usize, &Vec<usize>)| {
         neighbours.iter().map(|&other| place[node].abs_diff(place[other])).max().unwrap_or(0)
     };
-    graph.iter().enumerate().map(of).max().unwrap_or(0)
+    middle(graph.iter().enumerate().map(of))
+}
+
+/// The middle one of some numbers; 0 of none.
+pub fn middle(numbers: impl Iterator<Item = usize>) -> usize {
+    let mut all: Vec<usize> = numbers.collect();
+    all.sort_unstable();
+    all.get(all.len() / 2).copied().unwrap_or(0)
 }
 
 /// Cuthill and McKee's order: breadth first from a node at the edge of the graph, neighbours by their degree. Parts that do

@@ -93,10 +93,6 @@ struct Planner<'a> {
     stages: usize,
     /// Layers between a block and the tile; `stages + 1` and more are left out.
     distance: Vec<usize>,
-    /// The blocks that take part, ascending.
-    list: Vec<usize>,
-    /// By stage, how many of the list have been looked at.
-    next: Vec<usize>,
     /// By block, the number of stages that have begun and that have finished.
     begun: Vec<usize>,
     finished: Vec<usize>,
@@ -120,25 +116,19 @@ impl Planner<'_> {
         (self.stages + 1).saturating_sub(self.distance[block]).min(self.stages)
     }
 
-    /// Begins the next block of a stage, finishes what can be finished, and lets the next stage follow.
-    fn advance(&mut self, stage: usize) {
-        let block = self.list[self.next[stage]];
-        self.next[stage] += 1;
-        if stage < self.begins(block) {
-            self.begin(stage, block);
-            for &near in &self.graph[block] {
-                let ready = self.finished[near] == stage && stage < self.finishes(near);
-                if ready && self.graph[near].iter().all(|&other| self.begun[other] > stage) {
-                    self.finish(stage, near);
+    /// Begins a stage of a block, finishes it for all blocks that have waited for that, and begins the next stage of each of
+    /// them, while what it needs is in the cache.
+    fn advance(&mut self, stage: usize, block: usize) {
+        self.begin(stage, block);
+        let graph = self.graph;
+        for &near in &graph[block] {
+            let waits = self.finished[near] == stage && stage < self.finishes(near);
+            if waits && graph[near].iter().all(|&other| self.begun[other] > stage) {
+                self.finish(stage, near);
+                if stage + 1 < self.begins(near) {
+                    self.advance(stage + 1, near);
                 }
             }
-        }
-        while stage + 1 < self.stages {
-            let Some(&block) = self.list.get(self.next[stage + 1]) else { break };
-            if stage + 1 < self.begins(block) && self.finished[block] <= stage {
-                break;
-            }
-            self.advance(stage + 1);
         }
     }
 
@@ -186,7 +176,6 @@ impl Plan {
             graph,
             stages,
             distance,
-            next: vec![0; stages],
             begun: vec![0; count],
             finished: vec![0; count],
             readers: by_stage(),
@@ -195,10 +184,9 @@ impl Plan {
             rates: Slots::default(),
             traces: Slots::default(),
             events: Vec::new(),
-            list,
         };
-        for _ in 0..planner.list.len() {
-            planner.advance(0);
+        for block in list {
+            planner.advance(0, block);
         }
         let (rates, traces) = (planner.rates.count as usize, planner.traces.count as usize);
         Self { events: planner.events, rates, traces, range }
