@@ -81,7 +81,7 @@ impl Ticks {
     /// For a thread that begins and finishes blocks `events` times a step: where that is often, one in seven is looked at, a
     /// number that no pattern of stages is a multiple of.
     pub fn of(events: usize) -> Self {
-        Self { every: if events > 2000 { 7 } else { 1 }, ..Self::default() }
+        Self { every: if events > 200 { 7 } else { 1 }, ..Self::default() }
     }
 
     /// Starts, for one block.
