@@ -11,8 +11,8 @@ use std::process::Command;
 
 /// Steps of the short run, and how many more the longer one has.
 const SHORT: usize = 1;
-const MORE: usize = 8;
-/// Growth that fails. The counts of one program repeat to 2 % (measured: seeds of hash tables, at the start and the end of a
+const MORE: usize = 64;
+/// Growth that fails. The counts of one program repeat to 1 % (what differs: seeds of hash tables, at the start and the end of a
 /// run, do not cancel); another compiler may move them by some per cent.
 const GROWTH: f64 = 1.05;
 
