@@ -195,11 +195,12 @@ pub fn gather_run<L: Lanes, const K: usize>(
 /// Asks for numbers that will be wanted soon, for the second cache; changes nothing. Hardware fetches ahead within a page
 /// of 4 KiB only, which is about one block of one field.
 #[inline(always)]
-pub fn prefetch(values: &[F8]) {
+pub fn prefetch<T>(values: &[T]) {
     #[cfg(target_arch = "x86_64")]
-    for value in values {
+    for line in (0..size_of_val(values)).step_by(64) {
+        let at = values.as_ptr().cast::<i8>().wrapping_add(line);
         // SAFETY: a hint, which no address makes fail; every x86_64 processor has it.
-        unsafe { std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T1 }>(value.0.as_ptr().cast()) };
+        unsafe { std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T1 }>(at) };
     }
 }
 

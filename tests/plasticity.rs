@@ -137,7 +137,7 @@ impl March {
         let scheme = scene.build_scheme(&mesh, operators, kernel);
         let state = scene.initial_state(&mesh, &scheme).unwrap();
         let work = Work::new(&scheme, &state).with_balance(&scheme);
-        let h = scheme.operators.geometry.h.iter().flat_map(|h| h.0).fold(f64::INFINITY, f64::min);
+        let h = scheme.operators.geometry.h().flat_map(|h| h.0).fold(f64::INFINITY, f64::min);
         Self { scheme, state, work, survey: Survey::default(), courant: scene.settings().unwrap().courant, h }
     }
 

@@ -17,7 +17,7 @@ pub use carry::{Carried, Limits, carry};
 pub use certificate::{Certificate, Class};
 pub use curl_free::CurlFree;
 pub use from_points::from_points;
-pub use geometry::Geometry;
+pub use geometry::{Geometry, Metric, determinant};
 pub use matrix::{Matrix, Pool, Share};
 pub use point_matrices::PointMatrices;
 pub use points::{Points, Sampling};
@@ -68,7 +68,7 @@ impl Operators {
 
     /// Adds to stored matrices what is derived from the mesh at once.
     pub fn assemble(mesh: &Mesh, line: Line, blocks: Blocks, needs: &Needs, stored: Stored) -> Self {
-        let geometry = Geometry::new(mesh, &blocks, &line);
+        let geometry = Geometry::new(mesh, &blocks);
         let points = needs.sampling.zip(stored.points).map(|(s, pool)| Points::new(mesh, &blocks, &line, s, pool));
         let curl_free = stored.curl_free.map(|pool| CurlFree { pool });
         Self { degree: needs.degree, line, blocks, geometry, points, curl_free }

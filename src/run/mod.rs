@@ -141,7 +141,7 @@ impl Run<'_, '_> {
     /// min_e h_e, m.
     fn smallest_h(&self) -> f64 {
         let operators = &self.scheme.operators;
-        let blocks = operators.blocks.count.iter().zip(&operators.geometry.h);
+        let blocks = operators.blocks.count.iter().zip(operators.geometry.h());
         blocks.flat_map(|(&count, h)| &h.0[..count]).fold(f64::INFINITY, |a, b| a.min(*b))
     }
 

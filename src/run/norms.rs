@@ -16,11 +16,11 @@ pub fn norms(scheme: &Scheme, state: &State, material: &[usize]) -> BTreeMap<Str
     let weights: Vec<Vec<f64>> = (0..n).map(|a| (0..n).map(|b| if a == b { 1.0 } else { 0.0 }).collect()).collect();
     let mut values = Vec::with_capacity(names.len());
     for (cell, &(block, lane)) in scheme.operators.blocks.slot.iter().enumerate() {
-        for (a, weights) in weights.iter().enumerate() {
+        let masses = geometry.masses(&scheme.operators.line, block, lane);
+        for ((a, weights), mass) in weights.iter().enumerate().zip(masses) {
             let point = solution.combine(cell, scheme.operators.line.basis.node_2d(a), weights);
             values.clear();
             FIELDS.iter().for_each(|field| field.push(solution.law(cell), &point, &mut values));
-            let mass = geometry.mass[block * n + a].0[lane];
             squares.iter_mut().zip(&values).for_each(|(sum, value)| *sum += mass * value * value);
         }
     }

@@ -1,13 +1,13 @@
 //! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
 
 use super::balance::{self, Sums};
-use super::dense::{add_scaled, interleave};
+use super::dense::interleave;
 use super::phase::Clock;
 use super::predictor::Predictor;
 use super::predictor::transfer::{ToNodes, ToPoints};
 use super::stage::AtNodes;
 use super::sums::Terms;
-use super::volume::{self, Metric, with_nodes};
+use super::volume::{self, with_nodes};
 use super::{Method, Phase, Scheme, Scratch, Stage};
 use crate::lane::{Coefficient, F8, LANES, Lanes, Work};
 use crate::material::Material;
@@ -28,7 +28,7 @@ pub(super) struct Block<'a> {
     pub state: &'a State,
     /// dU/dt of the block in earlier stages, [stage][component][node].
     pub before: &'a [F8],
-    /// Volume part of dU/dt of this block (out).
+    /// Volume part of J dU/dt of this block, of the displacement all of d/dt (out).
     pub rate: &'a mut [F8],
     /// Traces of this block (out).
     pub traces: &'a mut [F8],
@@ -65,7 +65,7 @@ impl Work for Sum<'_> {
     }
 }
 
-/// rho0 b at the nodes, and the displacement: what not every run has.
+/// J rho0 b at the nodes, and the displacement: what not every run has.
 struct Extras<'a, 'b>(&'a mut Block<'b>);
 
 impl Work for Extras<'_, '_> {
@@ -77,10 +77,15 @@ impl Work for Extras<'_, '_> {
         let (n, density) = (operators.nodes(), block.scheme.laws[operators.blocks.material[block.block]].density());
         let nodes = &block.scratch.nodes;
         if !block.scheme.sources.is_empty() {
-            add_scaled::<L>(density, &nodes.source, &mut block.rate[4 * n..6 * n]);
+            for (a, mass) in nodes.masses.iter().enumerate() {
+                let factor = L::splat(density / operators.line.basis.weight_2d(a)) * L::load(mass);
+                for k in 0..2 {
+                    let rate = &mut block.rate[(4 + k) * n + a];
+                    factor.mul_add(L::load(&nodes.source[k * n + a]), L::load(rate)).store(rate);
+                }
+            }
             if let Some(sums) = block.sums.as_mut() {
-                let mass = Metric::of(&operators.geometry, block.block, n).mass;
-                let power = balance::source_power::<L>(density, mass, &nodes.mean, &nodes.source);
+                let power = balance::source_power::<L>(density, &nodes.masses, &nodes.mean, &nodes.source);
                 let dt = L::splat(block.stage.dt * block.scheme.weight(block.stage.number));
                 balance::add(dt, power, &mut sums.source_work);
             }
@@ -98,8 +103,8 @@ impl Block<'_> {
     /// All of it.
     pub fn run(mut self) {
         let (kernel, operators) = (self.scheme.kernel, &self.scheme.operators);
-        let (line, n) = (&operators.line, operators.nodes());
-        let metric = Metric::of(&operators.geometry, self.block, n);
+        let line = &operators.line;
+        let metric = &operators.geometry.blocks[self.block];
         let mut clock = self.scratch.phases.clock();
         match &operators.points {
             None => self.stage(&mut clock),
@@ -116,6 +121,8 @@ impl Block<'_> {
         }
         if !self.scheme.sources.is_empty() {
             self.source_at_nodes();
+            let masses = &mut self.scratch.nodes.masses;
+            with_nodes!(line.m, M => kernel.run(volume::Masses::<'_, M> { line, metric, masses }));
         }
         if !self.scheme.sources.is_empty() || self.state.has_displacement() {
             kernel.run(Extras(&mut self));
@@ -130,7 +137,7 @@ impl Block<'_> {
             kernel.run(volume::Traces::<'_, M, false> { line, metric, arrays, width, traces });
         });
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
-        kernel.run(volume::Speeds { law, normal: metric.normal, width, shear, traces: self.traces });
+        kernel.run(volume::Speeds { law, metric, width, shear, traces: self.traces });
         self.scratch.phases.book(Phase::Traces, &mut clock);
     }
 

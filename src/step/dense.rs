@@ -29,15 +29,6 @@ pub fn interleave<const K: usize>(fields: &[F8], nodes: usize, out: &mut [F8]) {
     }
 }
 
-/// y += a x.
-#[inline(always)]
-pub fn add_scaled<L: Lanes>(a: f64, x: &[F8], y: &mut [F8]) {
-    let a = L::splat(a);
-    for (y, x) in y.iter_mut().zip(x) {
-        a.mul_add(L::load(x), L::load(y)).store(y);
-    }
-}
-
 /// The numbers of field k at index i, for K fields of length `len`.
 #[inline(always)]
 pub fn gather<L: Lanes, const K: usize>(fields: &[F8], len: usize, i: usize) -> [L; K] {

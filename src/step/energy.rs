@@ -2,6 +2,7 @@
 
 use super::Scheme;
 use crate::mesh::map;
+use crate::operators::determinant;
 use crate::state::{State, UNKNOWNS};
 use crate::tensor;
 use rayon::prelude::*;
@@ -89,8 +90,7 @@ impl Scheme {
         let (n, law) = (self.operators.nodes(), &self.laws[self.operators.blocks.material[block]]);
         let u = &state.u[block * state.components * n..];
         let mut sum = Totals::empty(state);
-        for a in 0..n {
-            let mass = self.operators.geometry.mass[block * n + a].0[lane];
+        for (a, mass) in self.operators.geometry.masses(&self.operators.line, block, lane).enumerate() {
             let [f11, f12, f21, f22, p1, p2]: [f64; 6] = std::array::from_fn(|k| u[k * n + a].0[lane]);
             let f = [f11, f12, f21, f22];
             let response = law.response(f, &self.internal_at_node(state, block, lane, a));
@@ -122,13 +122,13 @@ impl Scheme {
     fn curl(&self, u: &[crate::lane::F8], block: usize, lane: usize, a: usize) -> f64 {
         let (line, n) = (&self.operators.line, self.operators.nodes());
         let (m, i, j) = (line.m, a / line.m, a % line.m);
-        let c: [f64; 4] = std::array::from_fn(|k| self.operators.geometry.cofactor[4 * (block * n + a) + k].0[lane]);
-        let determinant = c[0] * c[3] - c[1] * c[2];
+        let metric = self.operators.geometry.blocks[block].lane(lane);
+        let (one, two) = (metric.cofactor1(line.basis.nodes[i]), metric.cofactor2(line.basis.nodes[j]));
         let gradient = |component: usize, axis: usize| -> f64 {
             let at = |node: usize| u[component * n + node].0[lane];
             let along1: f64 = (0..m).map(|k| line.slope[i * m + k] * at(k * m + j)).sum();
             let along2: f64 = (0..m).map(|k| line.slope[j * m + k] * at(i * m + k)).sum();
-            (along1 * c[axis] + along2 * c[2 + axis]) / determinant
+            (along1 * one[axis] + along2 * two[axis]) / determinant(one, two)
         };
         (gradient(1, 0) - gradient(0, 1)).abs().max((gradient(3, 0) - gradient(2, 1)).abs())
     }

@@ -4,10 +4,10 @@
 use super::balance::{self, Sums};
 use super::sums::Terms;
 use super::survey::{Examine, History, Worst};
-use super::volume::{Metric, row, with_nodes};
+use super::volume::{Masses, cofactors, row, with_nodes};
 use super::{Phase, Scheme, Scratch, Stage, Survey, curl, flux};
 use crate::lane::{F8, Lanes, Work};
-use crate::operators::Line;
+use crate::operators::{Line, Metric, determinant};
 use crate::state::State;
 use crate::with_law;
 
@@ -25,7 +25,7 @@ pub(super) struct Block<'a> {
     pub survey: &'a Survey,
     /// dU/dt of the block in earlier stages, [stage][component][node].
     pub before: &'a [F8],
-    /// dU/dt of this block: volume part in, all out.
+    /// Volume part of J dU/dt of this block in, dU/dt out.
     pub rate: &'a mut [F8],
     /// Traces under way.
     pub traces: flux::Traces<'a>,
@@ -56,14 +56,15 @@ impl Block<'_> {
         let mut clock = self.scratch.phases.clock();
         let place = flux::Place { scheme: self.scheme, stage: self.stage, block: self.block };
         flux::lift(place, self.traces, &mut self.scratch.nodes, self.sums.as_deref_mut());
-        let (inverse_mass, lift) = (place.metric().inverse_mass, &self.scratch.nodes.lift);
-        let line = &operators.line;
-        with_nodes!(line.m, M => kernel.run(Lift::<'_, M> { line, inverse_mass, lift, rate: self.rate }));
+        let (line, metric, lift) = (&operators.line, place.metric(), &self.scratch.nodes.lift);
+        with_nodes!(line.m, M => kernel.run(Lift::<'_, M> { line, metric, lift, rate: self.rate }));
         self.scratch.phases.book(Phase::Flux, &mut clock);
         let Some(New { u, internal, speed, worst }) = self.new.take() else { return };
         kernel.run(Update(&mut self, u));
         self.scratch.phases.book(Phase::Corrector, &mut clock);
         if self.scheme.curl_rate.is_some() {
+            let masses = &mut self.scratch.nodes.masses;
+            with_nodes!(line.m, M => kernel.run(Masses::<'_, M> { line, metric, masses }));
             kernel.run(Project(&mut self, u));
         }
         self.scratch.phases.book(Phase::CurlFree, &mut clock);
@@ -95,12 +96,7 @@ impl Work for Project<'_, '_> {
     }
 }
 
-impl<'b> Block<'b> {
-    /// Its metric terms.
-    fn metric(&self) -> Metric<'b> {
-        flux::Place { scheme: self.scheme, stage: self.stage, block: self.block }.metric()
-    }
-
+impl Block<'_> {
     /// U^(n+1) = U^n + dt sum_s b_s k_s.
     #[inline(always)]
     fn update<L: Lanes>(&mut self, next: &mut [F8]) {
@@ -116,13 +112,13 @@ impl<'b> Block<'b> {
     fn project<L: Lanes>(&mut self, next: &mut [F8]) {
         let operators = &self.scheme.operators;
         let (Some(rate), Some(curl_free)) = (self.scheme.curl_rate, &operators.curl_free) else { return };
-        let (c, h) = (&self.survey.speed[self.block], &operators.geometry.h[self.block]);
+        let (c, h) = (&self.survey.speed[self.block], &operators.geometry.blocks[self.block].h);
         let decay = L::load(c) * L::splat(rate * self.stage.dt) / L::load(h);
         let theta = curl::relaxation(decay);
-        let mass = self.metric().mass;
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
         let one = L::splat(1.0);
         let nodes = &mut self.scratch.nodes;
+        let mass = &nodes.masses[..];
         if let Some(sums) = self.sums.as_mut() {
             let variables = law.internal().len();
             self.scheme.histories.at_nodes(&self.state.internal, self.block, variables, &mut nodes.internal);
@@ -138,10 +134,10 @@ impl<'b> Block<'b> {
     }
 }
 
-/// dU_a/dt -= Phi_a(x_fk) lifted_fk / (w_a J_a).
+/// dU_a/dt = (J dU_a/dt - Phi_a(x_fk) w_k lifted_fk / w_a) / J_a; w_k and one factor of w_a are the same number.
 struct Lift<'a, const M: usize> {
     line: &'a Line,
-    inverse_mass: &'a [F8],
+    metric: &'a Metric<F8>,
     /// [face][point][6].
     lift: &'a [F8],
     rate: &'a mut [F8],
@@ -152,9 +148,20 @@ impl<const M: usize> Work for Lift<'_, M> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let n = M * M;
-        let ends = [row::<M>(&self.line.ends[0]), row::<M>(&self.line.ends[1])];
+        let mut ends = [row::<M>(&self.line.ends[0]), row::<M>(&self.line.ends[1])];
+        let weights = row::<M>(&self.line.basis.weights);
+        for i in 0..M {
+            ends[0][i] /= weights[i];
+            ends[1][i] /= weights[i];
+        }
         let lift = &self.lift.as_chunks::<6>().0[..4 * M];
-        let inverse_mass = &self.inverse_mass[..n];
+        let [one, two] = cofactors::<L, M>(self.line, &self.metric.load::<L>());
+        let mut inverse = [[L::zero(); M]; M];
+        for i in 0..M {
+            for j in 0..M {
+                inverse[i][j] = L::splat(1.0) / determinant(one[i], two[j]);
+            }
+        }
         for (k, rate) in self.rate.chunks_exact_mut(n).enumerate().take(6) {
             for i in 0..M {
                 for j in 0..M {
@@ -163,7 +170,7 @@ impl<const M: usize> Work for Lift<'_, M> {
                     sum = L::splat(ends[1][i]).mul_add(L::load(&lift[M + j][k]), sum);
                     sum = L::splat(ends[0][j]).mul_add(L::load(&lift[2 * M + i][k]), sum);
                     sum = L::splat(ends[1][j]).mul_add(L::load(&lift[3 * M + i][k]), sum);
-                    (L::load(&rate[a]) - sum * L::load(&inverse_mass[a])).store(&mut rate[a]);
+                    ((L::load(&rate[a]) - sum) * inverse[i][j]).store(&mut rate[a]);
                 }
             }
         }

@@ -1,14 +1,14 @@
-//! Fluxes (3) of the four faces of a block, lifted: len w_k (Flux* - own flux of the F rows).
+//! Fluxes (3) of the four faces of a block, lifted: len (Flux* - own flux of the F rows).
 
 use super::balance::{FacePower, Sums};
-use super::volume::{Arrays, Metric, width};
+use super::volume::{Arrays, width};
 use super::{Scheme, Stage};
 use crate::boundary::FacePoint;
 use crate::lane::{F8, LANES, Lanes, Work, gather_run, load_array, store_array};
 use crate::material::Law;
 use crate::mesh::map;
 use crate::operators::blocks::Across;
-use crate::operators::{Neighbour, Side};
+use crate::operators::{Metric, Neighbour, Side};
 use crate::riemann::{Flux, Riemann, Trace, interface};
 use crate::with_flux;
 
@@ -157,9 +157,9 @@ struct Faces<'a> {
     own: &'a [F8],
     /// The other side's, by face, with its own normal.
     other: [Beyond<'a>; 4],
-    metric: Metric<'a>,
-    /// Weights of the points of a face.
-    weights: &'a [f64],
+    metric: &'a Metric<F8>,
+    /// Points of a face.
+    points: usize,
     density: f64,
     /// [face][point][6], out.
     lift: &'a mut [F8],
@@ -184,17 +184,16 @@ impl Work for Faces<'_> {
 impl Faces<'_> {
     #[inline(always)]
     fn of_face<L: Lanes, R: Riemann, const W: usize>(&mut self, face: usize, riemann: &R) {
-        let (m, other) = (self.weights.len(), self.other[face]);
+        let (m, other) = (self.points, self.other[face]);
         let density = L::splat(self.density);
         let own = &self.own.as_chunks::<W>().0[face * m..(face + 1) * m];
-        let normal = load_array::<L, 2>(&self.metric.normal[2 * face..2 * face + 2]);
-        let length = L::load(&self.metric.length[face]);
+        let metric = self.metric.load::<L>();
+        let (normal, length) = (metric.normal(face), metric.length(face));
         let lift = &mut self.lift.as_chunks_mut::<6>().0[m * face..m * (face + 1)];
         for point in 0..m {
             let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[point]));
             let plus = trace_of::<L, R, W>(&turned(other.load::<L, W>(point)));
-            let scale = length * L::splat(self.weights[point]);
-            store_array(riemann.lifted(&minus, &plus, normal, density, scale), &mut lift[point]);
+            store_array(riemann.lifted(&minus, &plus, normal, density, length), &mut lift[point]);
         }
     }
 }
@@ -236,10 +235,10 @@ impl Meter<'_, '_> {
     #[inline(always)]
     fn with<L: Lanes, R: Riemann, const W: usize>(self, riemann: &R) {
         let Self { place, sides, sums } = self;
-        let (scheme, metric, face) = (place.scheme, place.metric(), sides.face);
+        let (scheme, metric, face) = (place.scheme, place.metric().load::<L>(), sides.face);
         let neighbours = &scheme.operators.blocks.neighbours[place.block][face];
         let factor = place.stage.dt * scheme.weight(place.stage.number);
-        let normal = load_array::<L, 2>(&metric.normal[2 * face..2 * face + 2]);
+        let normal = metric.normal(face);
         let density = L::splat(place.law().density());
         let weights = &scheme.operators.line.basis.weights[..scheme.operators.line.m];
         for (point, (own, weight)) in sides.own.as_chunks::<W>().0.iter().zip(weights).enumerate() {
@@ -249,14 +248,14 @@ impl Meter<'_, '_> {
             let (mut flux, mut there, mut scale) = ([F8::ZERO; 6], [F8::ZERO; W], F8::ZERO);
             store_array(riemann.flux(&minus, &plus, normal, density), &mut flux);
             store_array(beyond, &mut there);
-            (L::load(&metric.length[face]) * L::splat(*weight) * L::splat(factor)).store(&mut scale);
+            (metric.length(face) * L::splat(*weight * factor)).store(&mut scale);
             for (lane, neighbour) in neighbours.iter().enumerate() {
                 let Some(special) = place.special(face, point, lane, own, sides.other) else { continue };
                 (0..6).for_each(|k| flux[k].0[lane] = special[k]);
                 if matches!(neighbour, Neighbour::Boundary(_)) {
                     // Lanes at a boundary see themselves: they have no jumps.
                     (0..W).for_each(|k| there[k].0[lane] = own[k].0[lane]);
-                    let at = [0, 1].map(|k| metric.normal[2 * face + k].0[lane]);
+                    let at = place.metric().lane(lane).normal(face);
                     FacePower { minus: own, plus: own, flux: &flux }.boundary(&scale, at, lane, sums);
                 }
             }
@@ -292,8 +291,8 @@ pub(super) fn lift(place: Place, traces: Traces, nodes: &mut Arrays, mut sums: O
         };
     }
     let own = traces.faces(4 * block, 4, length);
-    let (metric, weights, density) = (place.metric(), &scheme.operators.line.basis.weights[..m], place.law().density());
-    scheme.kernel.run(Faces { flux, metered, own, other, metric, weights, density, lift: &mut nodes.lift });
+    let (metric, density) = (place.metric(), place.law().density());
+    scheme.kernel.run(Faces { flux, metered, own, other, metric, points: m, density, lift: &mut nodes.lift });
     for face in 0..4 {
         let sides = Sides { face, own: &own[face * length..][..length], other: other[face] };
         if plan[face].special {
@@ -308,9 +307,8 @@ pub(super) fn lift(place: Place, traces: Traces, nodes: &mut Arrays, mut sums: O
 impl<'a> Place<'a> {
     /// Its metric terms.
     #[inline]
-    pub fn metric(&self) -> Metric<'a> {
-        let operators = &self.scheme.operators;
-        Metric::of(&operators.geometry, self.block, operators.nodes())
+    pub fn metric(&self) -> &'a Metric<F8> {
+        &self.scheme.operators.geometry.blocks[self.block]
     }
 
     /// Its law.
@@ -321,16 +319,15 @@ impl<'a> Place<'a> {
 
     /// The lifted numbers of lanes at a boundary or at another material, in `lift`, [point][6].
     fn put_right(&self, sides: Sides, lift: &mut [F8]) {
-        let (metric, line, face) = (self.metric(), &self.scheme.operators.line, sides.face);
-        let width = sides.own.len() / line.m;
+        let (face, width) = (sides.face, sides.own.len() / self.scheme.operators.line.m);
         for (point, (own, lift)) in sides.own.chunks_exact(width).zip(lift.as_chunks_mut::<6>().0).enumerate() {
             for lane in 0..LANES {
                 let Some(flux) = self.special(face, point, lane, own, sides.other) else { continue };
-                let scale = metric.length[face].0[lane] * line.basis.weights[point];
+                let metric = self.metric().lane(lane);
+                let (normal, length) = (metric.normal(face), metric.length(face));
                 for (k, flux) in flux.iter().enumerate() {
-                    let own =
-                        if k < 4 { own[4 + k / 2].0[lane] * metric.normal[2 * face + k % 2].0[lane] } else { 0.0 };
-                    lift[k].0[lane] = (flux + own) * scale;
+                    let own = if k < 4 { own[4 + k / 2].0[lane] * normal[k % 2] } else { 0.0 };
+                    lift[k].0[lane] = (flux + own) * length;
                 }
             }
         }
@@ -368,7 +365,7 @@ impl<'a> Place<'a> {
         let end = (face % 2) as f64;
         let xi = if face < 2 { [end, along] } else { [along, end] };
         let x = map::position(&geometry.corners_of(self.block, lane), xi);
-        let normal = [0, 1].map(|k| geometry.normal[(self.block * 4 + face) * 2 + k].0[lane]);
+        let normal = geometry.blocks[self.block].lane(lane).normal(face);
         FacePoint { x, normal, density }
     }
 }

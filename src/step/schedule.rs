@@ -226,13 +226,9 @@ impl Scheme {
     /// Asks for what the first stage of a block will read.
     #[inline]
     fn ask_for(&self, state: &State, block: usize) {
-        let (n, geometry) = (self.operators.nodes(), &self.operators.geometry);
-        let stride = state.components * n;
+        let stride = state.components * self.operators.nodes();
         lane::prefetch(&state.u[stride * block..stride * (block + 1)]);
-        lane::prefetch(&geometry.cofactor[4 * n * block..4 * n * (block + 1)]);
-        lane::prefetch(&geometry.inverse_mass[n * block..n * (block + 1)]);
-        lane::prefetch(&geometry.mass[n * block..n * (block + 1)]);
-        lane::prefetch(&geometry.normal[8 * block..8 * (block + 1)]);
+        lane::prefetch(&self.operators.geometry.blocks[block..=block]);
     }
 
     /// Numbers of the traces of a block.

@@ -73,8 +73,7 @@ impl Worst {
     /// That of a block with so many real cells.
     fn of(found: &Found, block: usize, cells: usize) -> Self {
         let real = ..cells;
-        let healthy =
-            found.poison.0[real].iter().all(|x| *x == 0.0) && found.min_j.0[real].iter().all(|j| *j > 0.0);
+        let healthy = found.poison.0[real].iter().all(|x| *x == 0.0) && found.min_j.0[real].iter().all(|j| *j > 0.0);
         Self {
             sick: if healthy { usize::MAX } else { block },
             fastest: found.speed.0[real].iter().fold(0.0, |a, b| a.max(*b)),

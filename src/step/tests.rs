@@ -102,7 +102,7 @@ pub(super) fn unpacked(scheme: &Scheme, state: &State) -> Vec<f64> {
 pub(super) fn march(scheme: &Scheme, state: &mut State, steps: usize, courant: f64) {
     let mut work = Work::new(scheme, state);
     let mut survey = Survey::default();
-    let h = scheme.operators.geometry.h.iter().flat_map(|h| h.0).fold(f64::INFINITY, f64::min);
+    let h = scheme.operators.geometry.h().flat_map(|h| h.0).fold(f64::INFINITY, f64::min);
     for _ in 0..steps {
         scheme.survey(state, &work, &mut survey).unwrap();
         scheme.step(state, courant * h / survey.fastest, &survey, &mut work);

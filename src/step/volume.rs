@@ -5,7 +5,7 @@
 
 use crate::lane::{F8, Lanes, Twin, Work, load_array, store_array, twins};
 use crate::material::{Law, Material};
-use crate::operators::{Geometry, Line};
+use crate::operators::{Line, Metric, determinant};
 use crate::riemann::tangent;
 use crate::tensor;
 use crate::with_law;
@@ -56,6 +56,8 @@ pub struct Arrays {
     pub across: Vec<F8>,
     /// Internal variables that stand for the nodes, [node][variable], for the balance of energy; empty without memory.
     pub internal: Vec<F8>,
+    /// The mass matrix, by node, where it is wanted.
+    pub masses: Vec<F8>,
     /// Rows of F in the weighted inner product, and their coefficients, for the curl-free projection.
     pub weighted: Vec<F8>,
     /// Coefficients of the complement, [row][column].
@@ -76,37 +78,9 @@ impl Arrays {
             lift: zeros(4 * 6 * m),
             across: zeros(4 * m * width(true, true)),
             internal: zeros(variables * n),
+            masses: zeros(n),
             weighted: zeros(4 * n),
             coefficients: zeros(4 * n),
-        }
-    }
-}
-
-/// Geometry of one block.
-#[derive(Clone, Copy)]
-pub struct Metric<'a> {
-    /// J dxi_b/dX_a, [node][b][a].
-    pub cofactor: &'a [F8],
-    /// 1 / (w_a J_a).
-    pub inverse_mass: &'a [F8],
-    /// w_a J_a.
-    pub mass: &'a [F8],
-    /// Outward normals, [face][2].
-    pub normal: &'a [F8],
-    /// Lengths of the faces.
-    pub length: &'a [F8],
-}
-
-impl<'a> Metric<'a> {
-    /// That of a block with n nodes a cell.
-    #[inline(always)]
-    pub fn of(geometry: &'a Geometry, block: usize, n: usize) -> Self {
-        Self {
-            cofactor: &geometry.cofactor[4 * n * block..4 * n * (block + 1)],
-            inverse_mass: &geometry.inverse_mass[n * block..n * (block + 1)],
-            mass: &geometry.mass[n * block..n * (block + 1)],
-            normal: &geometry.normal[8 * block..8 * (block + 1)],
-            length: &geometry.length[4 * block..4 * (block + 1)],
         }
     }
 }
@@ -121,16 +95,29 @@ fn square<const M: usize>(numbers: &[f64]) -> [[f64; M]; M] {
     out
 }
 
-/// dF_ia/dt = dv_i/dX_a, dp_i/dt = - sum_b K_a[., b] P_ia(b), into the first six components of `rate`.
+/// J dF_ia/dt = J dv_i/dX_a, J dp_i/dt = - sum_b K_a[., b] P_ia(b), into the first six components of `rate`; J, the
+/// determinant of dX/dxi, is left to `finish`, which divides once.
 pub struct Volume<'a, const M: usize> {
     /// The 1D tables.
     pub line: &'a Line,
     /// The block.
-    pub metric: Metric<'a>,
+    pub metric: &'a Metric<F8>,
     /// Averages in.
     pub arrays: &'a mut Arrays,
-    /// dU/dt of the block, out.
+    /// J dU/dt of the block, out.
     pub rate: &'a mut [F8],
+}
+
+/// J dxi_1/dX at the M nodes of xi1, and J dxi_2/dX at those of xi2.
+#[inline(always)]
+pub fn cofactors<L: Lanes, const M: usize>(line: &Line, metric: &Metric<L>) -> [[[L; 2]; M]; 2] {
+    let nodes = row::<M>(&line.basis.nodes);
+    let mut out = [[[L::zero(); 2]; M]; 2];
+    for k in 0..M {
+        out[0][k] = metric.cofactor1(nodes[k]);
+        out[1][k] = metric.cofactor2(nodes[k]);
+    }
+    out
 }
 
 impl<const M: usize> Work for Volume<'_, M> {
@@ -138,19 +125,18 @@ impl<const M: usize> Work for Volume<'_, M> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
         let n = M * M;
-        let cofactor = &self.metric.cofactor.as_chunks::<4>().0[..n];
+        let [one, two] = cofactors::<L, M>(self.line, &self.metric.load::<L>());
         let stress = &self.arrays.mean_stress.as_chunks::<4>().0[..n];
         let contravariant = &mut self.arrays.contravariant.as_chunks_mut::<4>().0[..n];
-        for a in 0..n {
-            let (c, p) = (load_array::<L, 4>(&cofactor[a]), load_array::<L, 4>(&stress[a]));
-            for b in 0..2 {
-                for i in 0..2 {
-                    let t = c[2 * b].mul_add(p[2 * i], c[2 * b + 1] * p[2 * i + 1]);
-                    t.store(&mut contravariant[a][2 * b + i]);
-                }
+        for i in 0..M {
+            for j in 0..M {
+                let a = i * M + j;
+                let p = load_array::<L, 4>(&stress[a]);
+                let (t1, t2) = (tensor::times(p, one[i]), tensor::times(p, two[j]));
+                store_array([t1[0], t1[1], t2[0], t2[1]], &mut contravariant[a]);
             }
         }
-        self.rates::<L>();
+        self.rates::<L>(&one, &two);
     }
 }
 
@@ -185,57 +171,58 @@ fn nodes_of<const M: usize, const W: usize>(values: &[[F8; W]], first: usize, st
 }
 
 impl<const M: usize> Volume<'_, M> {
-    /// Rows of F: D v; rows of p in weak form.
+    /// Rows of F: D v; rows of p in weak form; `one` and `two` are the [`cofactors`].
     #[inline(always)]
-    fn rates<L: Lanes>(&mut self) {
+    fn rates<L: Lanes>(&mut self, one: &[[L; 2]; M], two: &[[L; 2]; M]) {
         let (slope, weak) = (square::<M>(&self.line.slope), square::<M>(&self.line.weak));
         let n = M * M;
         let mean = &self.arrays.mean.as_chunks::<6>().0[..n];
         let traction = &self.arrays.contravariant.as_chunks::<4>().0[..n];
-        let cofactor = &self.metric.cofactor.as_chunks::<4>().0[..n];
-        let scale = Scale::<M>::of(self.line, self.metric);
         let rate = &mut self.rate[..6 * n];
         for i in 0..M {
             for j in 0..M {
                 let a = i * M + j;
-                let scale = scale.at::<L>(i, j);
                 let first = line_sum::<L, M, 6, 2>(&slope[i], nodes_of(mean, j, M), 4);
                 let second = line_sum::<L, M, 6, 2>(&slope[j], nodes_of(mean, i * M, 1), 4);
-                let mut c = load_array::<L, 4>(&cofactor[a]);
-                for c in &mut c {
-                    *c = *c * scale;
-                }
                 for r in 0..2 {
                     for axis in 0..2 {
-                        let gradient = first[r].mul_add(c[axis], second[r] * c[2 + axis]);
+                        let gradient = first[r].mul_add(one[i][axis], second[r] * two[j][axis]);
                         gradient.store(&mut rate[(2 * r + axis) * n + a]);
                     }
                 }
                 let first = line_sum::<L, M, 4, 2>(&weak[i], nodes_of(traction, j, M), 0);
                 let second = line_sum::<L, M, 4, 2>(&weak[j], nodes_of(traction, i * M, 1), 2);
                 for r in 0..2 {
-                    ((first[r] + second[r]) * -scale).store(&mut rate[(4 + r) * n + a]);
+                    (-(first[r] + second[r])).store(&mut rate[(4 + r) * n + a]);
                 }
             }
         }
     }
 }
 
-/// 1 / J_a = w_a / (w_a J_a).
-struct Scale<'a, const M: usize> {
-    weights: [f64; M],
-    inverse_mass: &'a [F8],
+/// w_a J_a at all nodes, the diagonal mass matrix; m^2.
+pub struct Masses<'a, const M: usize> {
+    /// The 1D tables.
+    pub line: &'a Line,
+    /// The block.
+    pub metric: &'a Metric<F8>,
+    /// By node, out.
+    pub masses: &'a mut [F8],
 }
 
-impl<'a, const M: usize> Scale<'a, M> {
+impl<const M: usize> Work for Masses<'_, M> {
+    type Out = ();
     #[inline(always)]
-    fn of(line: &Line, metric: Metric<'a>) -> Self {
-        Self { weights: row(&line.basis.weights), inverse_mass: &metric.inverse_mass[..M * M] }
-    }
-
-    #[inline(always)]
-    fn at<L: Lanes>(&self, i: usize, j: usize) -> L {
-        L::splat(self.weights[i] * self.weights[j]) * L::load(&self.inverse_mass[i * M + j])
+    fn run<L: Lanes>(self) {
+        let [one, two] = cofactors::<L, M>(self.line, &self.metric.load::<L>());
+        let weights = row::<M>(&self.line.basis.weights);
+        let masses = &mut self.masses[..M * M];
+        for i in 0..M {
+            for j in 0..M {
+                let weight = L::splat(weights[i] * weights[j]);
+                (weight * determinant(one[i], two[j])).store(&mut masses[i * M + j]);
+            }
+        }
     }
 }
 
@@ -253,7 +240,7 @@ pub struct Traces<'a, const M: usize, const METERED: bool> {
     /// The 1D tables.
     pub line: &'a Line,
     /// The block.
-    pub metric: Metric<'a>,
+    pub metric: &'a Metric<F8>,
     /// Averages in.
     pub arrays: &'a Arrays,
     /// Numbers of a trace, see [`width`].
@@ -266,11 +253,12 @@ impl<const M: usize, const METERED: bool> Work for Traces<'_, M, METERED> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
+        let metric = self.metric.load::<L>();
         for face in 0..2 {
-            self.of_face::<L, true>(face);
+            self.of_face::<L, true>(face, metric.normal(face));
         }
         for face in 2..4 {
-            self.of_face::<L, false>(face);
+            self.of_face::<L, false>(face, metric.normal(face));
         }
     }
 }
@@ -278,9 +266,8 @@ impl<const M: usize, const METERED: bool> Work for Traces<'_, M, METERED> {
 impl<const M: usize, const METERED: bool> Traces<'_, M, METERED> {
     /// Those of a face that xi1 runs towards (FIRST), or xi2.
     #[inline(always)]
-    fn of_face<L: Lanes, const FIRST: bool>(&mut self, face: usize) {
+    fn of_face<L: Lanes, const FIRST: bool>(&mut self, face: usize, normal: [L; 2]) {
         let ends = row::<M>(&self.line.ends[face % 2]);
-        let normal = load_array::<L, 2>(&self.metric.normal[2 * face..2 * face + 2]);
         let mean = &self.arrays.mean.as_chunks::<6>().0[..M * M];
         let mean_stress = &self.arrays.mean_stress.as_chunks::<4>().0[..M * M];
         let width = self.width;
@@ -302,8 +289,8 @@ impl<const M: usize, const METERED: bool> Traces<'_, M, METERED> {
 pub struct Speeds<'a> {
     /// The law.
     pub law: &'a Law,
-    /// Outward normals, [face][2].
-    pub normal: &'a [F8],
+    /// The block.
+    pub metric: &'a Metric<F8>,
     /// Numbers of a trace, see [`width`].
     pub width: usize,
     /// Whether c_s is wanted.
@@ -330,19 +317,19 @@ impl Work for Speeds<'_> {
 }
 
 impl Speeds<'_> {
-    /// The normal of a point, numbered through all faces of `m` points.
+    /// The normals of all faces.
     #[inline(always)]
-    fn normal_at<L: Lanes>(&self, point: usize, m: usize) -> [L; 2] {
-        let face = point / m;
-        load_array(&self.normal[2 * face..2 * face + 2])
+    fn normals<L: Lanes>(&self) -> [[L; 2]; 4] {
+        let metric = self.metric.load::<L>();
+        [metric.normal(0), metric.normal(1), metric.normal(2), metric.normal(3)]
     }
 
     #[inline(always)]
     fn of_pressure<L: Lanes, M: Material, const W: usize>(&mut self, law: M) {
-        let m = self.traces.len() / W / 4;
+        let (m, normals) = (self.traces.len() / W / 4, self.normals::<L>());
         for pair in 0..2 * m {
             let (a, b) = (2 * pair, 2 * pair + 1);
-            let normals = twins(self.normal_at::<L>(a, m), self.normal_at::<L>(b, m));
+            let normals = twins(normals[a / m], normals[b / m]);
             let traces = &mut self.traces.as_chunks_mut::<W>().0[a..a + 2];
             let f = twins(load_array::<L, 4>(&traces[0][..4]), load_array::<L, 4>(&traces[1][..4]));
             let Twin(one, two) = law.pressure_speed(f, normals);
@@ -353,9 +340,9 @@ impl Speeds<'_> {
 
     #[inline(always)]
     fn of_both<L: Lanes, M: Material, const W: usize>(&mut self, law: M) {
-        let m = self.traces.len() / W / 4;
+        let (m, normals) = (self.traces.len() / W / 4, self.normals::<L>());
         for point in 0..4 * m {
-            let normal = self.normal_at::<L>(point, m);
+            let normal = normals[point / m];
             let trace = &mut self.traces.as_chunks_mut::<W>().0[point];
             store_array(law.speeds(load_array::<L, 4>(&trace[..4]), normal), &mut trace[8..10]);
         }

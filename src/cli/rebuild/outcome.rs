@@ -69,8 +69,7 @@ impl Outcome<'_> {
         let mut sum = 0.0;
         for (cell, u) in u.chunks_exact(self.state.components * n).enumerate() {
             let (block, lane) = scheme.operators.blocks.slot[cell];
-            for a in 0..n {
-                let mass = scheme.operators.geometry.mass[block * n + a].0[lane];
+            for (a, mass) in scheme.operators.geometry.masses(&scheme.operators.line, block, lane).enumerate() {
                 for (k, scale) in scale[self.new.body.material[cell]].iter().enumerate().take(UNKNOWNS) {
                     let rest = if k == 0 || k == 3 { 1.0 } else { 0.0 };
                     sum += mass * scale * (u[k * n + a] - rest).powi(2);
