@@ -128,11 +128,11 @@ impl<const M: usize> Work for Volume<'_, M> {
         let [one, two] = cofactors::<L, M>(self.line, &self.metric.load::<L>());
         let stress = &self.arrays.mean_stress.as_chunks::<4>().0[..n];
         let contravariant = &mut self.arrays.contravariant.as_chunks_mut::<4>().0[..n];
-        for i in 0..M {
-            for j in 0..M {
+        for (i, one) in one.iter().enumerate() {
+            for (j, two) in two.iter().enumerate() {
                 let a = i * M + j;
                 let p = load_array::<L, 4>(&stress[a]);
-                let (t1, t2) = (tensor::times(p, one[i]), tensor::times(p, two[j]));
+                let (t1, t2) = (tensor::times(p, *one), tensor::times(p, *two));
                 store_array([t1[0], t1[1], t2[0], t2[1]], &mut contravariant[a]);
             }
         }
