@@ -228,11 +228,14 @@ pub fn store_array<L: Lanes, const K: usize>(values: [L; K], to: &mut [F8]) {
 /// An entry of an operator matrix: one number for all cells of a block (`f64`: the cells are congruent) or
 /// one for each (`F8`).
 pub trait Coefficient: Copy + Send + Sync {
+    /// Whether each cell has a number of its own.
+    const OWN: bool;
     /// The entry in each lane.
     fn lanes<L: Lanes>(&self) -> L;
 }
 
 impl Coefficient for f64 {
+    const OWN: bool = false;
     #[inline(always)]
     fn lanes<L: Lanes>(&self) -> L {
         L::splat(*self)
@@ -240,6 +243,7 @@ impl Coefficient for f64 {
 }
 
 impl Coefficient for F8 {
+    const OWN: bool = true;
     #[inline(always)]
     fn lanes<L: Lanes>(&self) -> L {
         L::load(self)

@@ -4,8 +4,7 @@ use super::Problem;
 use crate::operators::Operators;
 use crate::step::Method;
 
-/// Bytes of a cell in one step: each sweep (`begin` and `finish` of a stage, the survey) reads and writes its arrays
-/// once. Traces are written once and read once: those of neighbours are near.
+/// Bytes of a cell in one step: each sweep (`begin` and `finish` of a stage) reads and writes its arrays once. Traces are written once and read once: those of neighbours are near.
 pub fn traffic(problem: &Problem) -> f64 {
     let operators = &problem.scheme.operators;
     let unknowns = size_of_val(&problem.start.u[..]) as f64;
@@ -24,7 +23,7 @@ pub fn traffic(problem: &Problem) -> f64 {
             stage * tableau.stages() as f64 + before as f64 * unknowns
         }
     };
-    // The update: U in, its new values out, the projection. The survey: new values in, matrices to the points.
-    let step = stages + 2.0 * unknowns + curl_free + unknowns + points;
+    // The update: U in, its new values out; the projection; matrices to the points for the survey.
+    let step = stages + 2.0 * unknowns + curl_free + points;
     step / problem.mesh.cells.len() as f64
 }
