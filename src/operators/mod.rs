@@ -113,6 +113,8 @@ pub struct Line {
     pub weak: Vec<f64>,
     /// l_k(0) and l_k(1).
     pub ends: [Vec<f64>; 2],
+    /// Lift: l_k(0) / w_k and l_k(1) / w_k.
+    pub lift: [Vec<f64>; 2],
 }
 
 impl Line {
@@ -123,7 +125,8 @@ impl Line {
         let w = &basis.weights;
         let weak = (0..m * m).map(|e| w[e % m] * slope[(e % m) * m + e / m] / w[e / m]).collect();
         let ends = [basis.values(0.0), basis.values(1.0)];
-        Self { basis, m, slope, weak, ends }
+        let lift = [0, 1].map(|end: usize| ends[end].iter().zip(w).map(|(l, w)| l / w).collect());
+        Self { basis, m, slope, weak, ends, lift }
     }
 
     /// Parent coordinates of the nodes a = i M + j.

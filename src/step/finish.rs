@@ -148,12 +148,7 @@ impl<const M: usize> Work for Lift<'_, M> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let n = M * M;
-        let mut ends = [row::<M>(&self.line.ends[0]), row::<M>(&self.line.ends[1])];
-        let weights = row::<M>(&self.line.basis.weights);
-        for i in 0..M {
-            ends[0][i] /= weights[i];
-            ends[1][i] /= weights[i];
-        }
+        let ends = [row::<M>(&self.line.lift[0]), row::<M>(&self.line.lift[1])];
         let lift = &self.lift.as_chunks::<6>().0[..4 * M];
         let [one, two] = cofactors::<L, M>(self.line, &self.metric.load::<L>());
         let mut inverse = [[L::zero(); M]; M];
