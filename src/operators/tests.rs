@@ -52,6 +52,36 @@ fn masses_sum_to_the_area_and_normals_close_each_cell() {
 }
 
 #[test]
+fn metric_terms_are_those_of_the_bilinear_map() {
+    let mesh = distorted();
+    let operators = build(&mesh, 2, &seed::seed(seed::Layout::Gauss, 3, 9));
+    for (cell, &(block, lane)) in operators.blocks.slot.iter().enumerate() {
+        let (metric, corners) = (operators.geometry.blocks[block].lane(lane), mesh.corners(cell));
+        for xi in [[0.0, 0.0], [1.0, 0.0], [0.3, 0.8], [1.0, 1.0]] {
+            let (one, two) = (metric.cofactor1(xi[0]), metric.cofactor2(xi[1]));
+            let jacobian = map::jacobian(&corners, xi);
+            let j = map::determinant(&jacobian);
+            let inverse = map::inverse(&jacobian);
+            for a in 0..2 {
+                // Differences of coordinates of size 1: a few roundings of 1e-16.
+                assert!((one[a] - j * inverse[0][a]).abs() < 1e-15 && (two[a] - j * inverse[1][a]).abs() < 1e-15);
+            }
+            assert!((super::determinant(one, two) - j).abs() < 1e-15);
+        }
+        for face in 0..4 {
+            let [a, b] = crate::mesh::FACE_CORNERS[face].map(|k| corners[k]);
+            let (along, n) = ([b[0] - a[0], b[1] - a[1]], metric.normal(face));
+            assert!((metric.length(face) - along[0].hypot(along[1])).abs() < 1e-15);
+            assert!((n[0] * along[0] + n[1] * along[1]).abs() < 1e-15 && (n[0].hypot(n[1]) - 1.0).abs() < 4e-15);
+            // Outward: away from the middle of the cell.
+            let middle = map::position(&corners, [0.5, 0.5]);
+            assert!(n[0] * (a[0] - middle[0]) + n[1] * (a[1] - middle[1]) > 0.0);
+        }
+        assert!((metric.h - map::h_e(&corners)).abs() < 1e-16);
+    }
+}
+
+#[test]
 fn transfer_and_slopes_are_exact_on_q_n_for_any_cloud() {
     let mesh = distorted();
     for degree in 1..=4 {

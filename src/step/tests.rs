@@ -274,6 +274,30 @@ fn one_two_and_three_threads_give_the_same_bits() {
 }
 
 #[test]
+fn the_survey_that_a_step_makes_is_that_of_its_result() {
+    let mesh = distorted(5);
+    for degree in [1, 3] {
+        for kind in KINDS {
+            let scheme = scheme(&mesh, kind, degree, &midpoints(&mesh, degree), wall);
+            let state = state(&mesh, &scheme, wavy);
+            let mut work = Work::new(&scheme, &state);
+            let (mut before, mut found, mut expected) = Default::default();
+            scheme.survey(&state, &work, &mut before).unwrap();
+            scheme.step(&state, 1e-3, &before, &mut work);
+            scheme.surveyed(&mut work, &mut found).unwrap();
+            scheme.survey(&work.next, &work, &mut expected).unwrap();
+            // The same work on the same numbers: the same bits.
+            assert_eq!(found, expected, "{kind:?} S{degree}");
+            assert_ne!(found, before);
+            // A step to a state that is lost says so, and says the same.
+            scheme.step(&state, 10.0, &before, &mut work);
+            let lost = scheme.surveyed(&mut work, &mut found).unwrap_err();
+            assert_eq!(lost, scheme.survey(&work.next, &work, &mut expected).unwrap_err(), "{kind:?} S{degree}");
+        }
+    }
+}
+
+#[test]
 fn all_kernels_of_this_processor_agree_after_100_steps() {
     let mesh = distorted(4);
     let kernels = || Kernel::NAMES.iter().map(|(_, kernel)| *kernel).filter(|kernel| kernel.is_available());
