@@ -12,8 +12,8 @@ use std::process::Command;
 /// Steps of the short run, and how many more the longer one has.
 const SHORT: usize = 1;
 const MORE: usize = 64;
-/// Growth that fails. The counts of one program repeat to 1 % (what differs: seeds of hash tables, at the start and the end of a
-/// run, do not cancel); another compiler may move them by some per cent.
+/// Growth that fails. The counts of one program repeat to 1 % (what differs: seeds of hash tables, at the start and the
+/// end of a run, do not cancel); another compiler may move them by some per cent.
 const GROWTH: f64 = 1.05;
 
 /// Name in `tests/data/instructions.toml` and arguments; 8 x 8 cells are whole blocks.

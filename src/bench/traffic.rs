@@ -4,7 +4,8 @@ use super::Problem;
 use crate::operators::Operators;
 use crate::step::Method;
 
-/// Bytes of a cell in one step: each sweep (`begin` and `finish` of a stage) reads and writes its arrays once. Traces are written once and read once: those of neighbours are near.
+/// Bytes of a cell in one step: each sweep (`begin` and `finish` of a stage) reads and writes its arrays once. Traces are
+/// written once and read once: those of neighbours are near.
 pub fn traffic(problem: &Problem) -> f64 {
     let operators = &problem.scheme.operators;
     let unknowns = size_of_val(&problem.start.u[..]) as f64;

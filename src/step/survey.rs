@@ -105,7 +105,7 @@ impl Scheme {
                 let u = &state.u[stride * block..stride * (block + 1)];
                 let internal = self.histories.of(&state.internal, block);
                 let work = Examine { scheme: self, block, u, history: History::Now(internal), scratch };
-                work.run(speed)
+                work.judge(speed)
             })
         });
         self.judge(worst.reduce(|| Worst::NONE, Worst::and), state, out)
@@ -194,7 +194,7 @@ pub(super) struct Examine<'a> {
 
 impl Examine<'_> {
     /// The worst of the block; its speeds into `speed`.
-    pub fn run(self, speed: &mut F8) -> Worst {
+    pub fn judge(self, speed: &mut F8) -> Worst {
         let (scheme, block) = (self.scheme, self.block);
         let found = scheme.kernel.run(self);
         *speed = found.speed;
