@@ -118,6 +118,18 @@ pub trait Lanes: Lane {
     fn store(self, to: &mut F8);
     /// From one number for each lane.
     fn from_lanes(numbers: [f64; LANES]) -> Self;
+    /// Whether [`Lanes::pick`] is faster than [`load_lanes`].
+    const PICKS: bool = false;
+    /// These lanes, but those in `lanes` (a bit for each) from lane `from[l]` of `number`.
+    #[inline(always)]
+    fn pick(self, number: &F8, from: &[u8; LANES], lanes: u8) -> Self {
+        let mut all = F8::ZERO;
+        self.store(&mut all);
+        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+            all.0[lane] = number.0[usize::from(from[lane]) % LANES];
+        }
+        Self::load(&all)
+    }
     /// K numbers of cells in rows that begin in other lanes: lane l of number k is lane l + r of `all[first + k]` for
     /// l < 8 - r, then lane l + r - 8 of `all[second + k]`; r in 1..8.
     ///
@@ -157,39 +169,25 @@ pub fn load_array<L: Lanes, const K: usize>(from: &[F8]) -> [L; K] {
     out
 }
 
-/// Runs of K numbers, for each lane from places of its own: number k of run i of lane l is number
-/// `first[l] + i step[l] + LANES k` of [`as_f64`].
+/// K numbers, for each lane from a place of its own: number k of lane l is number `first[l] + LANES k` of [`as_f64`].
 ///
 /// # Panics
 /// Where a lane would read beyond the end.
 #[inline(always)]
-pub fn gather_run<L: Lanes, const K: usize>(
-    from: &[F8],
-    first: &[usize; LANES],
-    step: &[isize; LANES],
-    out: &mut [[F8; K]],
-) {
+pub fn load_lanes<L: Lanes, const K: usize>(from: &[F8], first: &[usize; LANES]) -> [L; K] {
     let numbers = as_f64(from);
-    let (reach, more) = ((K - 1) * LANES, out.len().saturating_sub(1) as isize);
-    let mut at = [numbers.as_ptr(); LANES];
-    for lane in 0..LANES {
-        let last = first[lane].wrapping_add_signed(more * step[lane]);
-        assert!(first[lane].max(last) < numbers.len().saturating_sub(reach), "a lane beyond the end");
-        at[lane] = numbers.as_ptr().wrapping_add(first[lane]);
-    }
-    for out in out {
-        for (k, out) in out.iter_mut().enumerate() {
-            let mut lanes = [0.0; LANES];
-            for lane in 0..LANES {
-                // SAFETY: runs lie between the first and the last, and both ends of each were seen to be there.
-                lanes[lane] = unsafe { *at[lane].add(k * LANES) };
-            }
-            L::from_lanes(lanes).store(out);
+    let last = numbers.len().saturating_sub((K - 1) * LANES);
+    assert!(first.iter().fold(true, |within, at| within & (*at < last)), "a lane beyond the end");
+    let mut out = [L::zero(); K];
+    for (k, out) in out.iter_mut().enumerate() {
+        let mut lanes = [0.0; LANES];
+        for (lane, first) in lanes.iter_mut().zip(first) {
+            // SAFETY: the last number of each lane was seen to be there, and k < K.
+            *lane = unsafe { *numbers.get_unchecked(first + k * LANES) };
         }
-        for lane in 0..LANES {
-            at[lane] = at[lane].wrapping_offset(step[lane]);
-        }
+        *out = L::from_lanes(lanes);
     }
+    out
 }
 
 /// Asks for numbers that will be wanted soon, for the second cache; changes nothing. Hardware fetches ahead within a page

@@ -120,6 +120,16 @@ impl Lanes for Avx512 {
         // SAFETY: see Avx512.
         unsafe { Avx512(_mm512_loadu_pd(n.as_ptr())) }
     }
+    const PICKS: bool = true;
+    /// The processor looks at the lowest three bits of a place only.
+    #[inline(always)]
+    fn pick(self, number: &F8, from: &[u8; LANES], lanes: u8) -> Avx512 {
+        // SAFETY: see Avx512; 8 bytes are read of 8, and as for load.
+        unsafe {
+            let from = _mm512_cvtepu8_epi64(_mm_loadl_epi64(from.as_ptr().cast()));
+            Avx512(_mm512_mask_permutexvar_pd(self.0, lanes, from, _mm512_load_pd(number.0.as_ptr())))
+        }
+    }
     #[inline(always)]
     fn load_joined<const K: usize>(all: &[F8], first: usize, second: usize, r: usize) -> [Avx512; K] {
         assert_within::<K>(all, first, second, r);

@@ -1,61 +1,9 @@
-//! Cells in blocks of 8 lanes of one law, and where each face's neighbour keeps its trace.
+//! Cells in blocks of 8 lanes of one law.
 
 use super::order;
+use super::sides::{Across, Gathered, Neighbour, Plan, Side, joined};
 use crate::lane::{F8, LANES};
 use crate::mesh::Link;
-
-/// A face of a cell as the neighbour across it sees it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Across {
-    /// The face among all faces of all blocks: 4 block + local face.
-    pub face: usize,
-    /// The lane of the cell.
-    pub lane: usize,
-    /// Whether its points run the other way.
-    pub flip: bool,
-}
-
-/// The other side of a face, for one lane.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Neighbour {
-    /// A cell of the same law.
-    Cell(Across),
-    /// A cell of another law, with the number of that law.
-    Interface(Across, usize),
-    /// A boundary group of the mesh.
-    Boundary(usize),
-    /// A lane that fills up the block.
-    Padding,
-}
-
-/// Where the traces across a face of a block lie.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// Each lane's in the same lane of one face of one block, with the points in the same order: read as it lies. Lanes
-    /// at a boundary find there what they must not use.
-    Aligned(usize),
-    /// Lane l in lane l + `by` of the `first` face for l < 8 - `by`, then in lane l + `by` - 8 of the `second`, with the
-    /// points in the same order: cells in rows. Lanes at a boundary find there what they must not use.
-    Joined {
-        /// A face, 4 block + local face.
-        first: usize,
-        /// Another, or the same.
-        second: usize,
-        /// 1 to 7.
-        by: usize,
-    },
-    /// Anywhere: entry of [`Blocks::gathered`].
-    Gathered(usize),
-}
-
-/// What the flux of a face of a block does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Plan {
-    /// The other side.
-    pub side: Side,
-    /// Whether a lane is at a boundary or at another material.
-    pub special: bool,
-}
 
 /// The blocks; the last one of a law is padded with its last cell.
 ///
@@ -76,8 +24,8 @@ pub struct Blocks {
     pub neighbours: Vec<[[Neighbour; LANES]; 4]>,
     /// For each block and local face how to get at the other side.
     pub plan: Vec<[Plan; 4]>,
-    /// Other sides lane by lane; lanes at a boundary and padding see themselves.
-    pub gathered: Vec<[Across; LANES]>,
+    /// Other sides that lie anywhere; lanes at a boundary and padding see themselves.
+    pub gathered: Vec<Gathered>,
 }
 
 impl Blocks {
@@ -171,7 +119,7 @@ impl Blocks {
         if let Some(side) = joined(&across, &lanes).filter(|_| self.count[block] == LANES) {
             return Plan { side, special };
         }
-        self.gathered.push(across);
+        self.gathered.push(Gathered::of(&across));
         Plan { side: Side::Gathered(self.gathered.len() - 1), special }
     }
 
@@ -237,23 +185,6 @@ impl Blocks {
         }
         out
     }
-}
-
-/// Whether the lanes across a face follow each other in one or two faces.
-fn joined(across: &[Across; LANES], neighbours: &[Neighbour; LANES]) -> Option<Side> {
-    let is_cell = |lane: &usize| matches!(neighbours[*lane], Neighbour::Cell(_) | Neighbour::Interface(..));
-    (1..LANES).find_map(|by| {
-        let mut faces = [None; 2];
-        for lane in (0..LANES).filter(is_cell) {
-            let (at, second) = (across[lane], lane + by >= LANES);
-            let face = *faces[usize::from(second)].get_or_insert(at.face);
-            if at != (Across { face, lane: (lane + by) % LANES, flip: false }) {
-                return None;
-            }
-        }
-        let any = faces[0].or(faces[1])?;
-        Some(Side::Joined { first: faces[0].unwrap_or(any), second: faces[1].unwrap_or(any), by })
-    })
 }
 
 /// The cells across the faces of a cell.

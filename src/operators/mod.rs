@@ -10,9 +10,10 @@ pub mod matrix;
 mod order;
 pub mod point_matrices;
 pub mod points;
+pub mod sides;
 pub mod stored;
 
-pub use blocks::{Blocks, Neighbour, Side};
+pub use blocks::Blocks;
 pub use carry::{Carried, Limits, carry};
 pub use certificate::{Certificate, Class};
 pub use curl_free::CurlFree;
@@ -21,6 +22,7 @@ pub use geometry::{Geometry, Metric, determinant};
 pub use matrix::{Matrix, Pool, Share};
 pub use point_matrices::PointMatrices;
 pub use points::{Points, Sampling};
+pub use sides::{Neighbour, Side};
 pub use stored::Stored;
 
 use crate::basis::Lagrange;

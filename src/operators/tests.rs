@@ -1,5 +1,5 @@
 //! Exact on polynomials, on distorted cells, for any cloud.
-use super::blocks::Across;
+use super::sides::Across;
 use super::*;
 use crate::cloud::{Cloud, seed};
 use crate::lane::LANES;
@@ -272,7 +272,7 @@ fn plans_of_faces_read_what_the_neighbours_say() {
                         let face = if lane + by < LANES { first } else { second };
                         assert_eq!(across, Across { face, lane: (lane + by) % LANES, flip: false });
                     }
-                    Side::Gathered(entry) => assert_eq!(blocks.gathered[entry][lane], across),
+                    Side::Gathered(entry) => assert_eq!(blocks.gathered[entry].across(lane), across),
                 }
             }
             near += usize::from(!matches!(blocks.plan[block][face].side, Side::Gathered(_)));

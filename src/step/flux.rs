@@ -4,10 +4,10 @@ use super::balance::{FacePower, Sums};
 use super::volume::{Arrays, width};
 use super::{Scheme, Stage};
 use crate::boundary::FacePoint;
-use crate::lane::{F8, LANES, Lanes, Work, gather_run, load_array, store_array};
+use crate::lane::{F8, LANES, Lanes, Work, load_array, load_lanes, store_array};
 use crate::material::Law;
 use crate::mesh::map;
-use crate::operators::blocks::Across;
+use crate::operators::sides::Gathered;
 use crate::operators::{Metric, Neighbour, Side};
 use crate::riemann::{Flux, Riemann, Trace, interface};
 use crate::with_flux;
@@ -76,76 +76,136 @@ impl<'a> Traces<'a> {
     }
 }
 
+/// Where the numbers of a point across a face come from: one way, so that no loop over points looks at it.
+trait Other {
+    /// The numbers of a point.
+    fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W];
+}
+
+/// [point][width], each lane's in the same lane.
+#[derive(Clone, Copy)]
+struct Aligned<'a>(&'a [F8]);
+
+impl Other for Aligned<'_> {
+    #[inline(always)]
+    fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
+        load_array(&self.0[point * W..][..W])
+    }
+}
+
+/// In two runs of all traces, see [`Lanes::load_joined`].
+#[derive(Clone, Copy)]
+struct Joined<'a> {
+    all: &'a [F8],
+    first: usize,
+    second: usize,
+    by: usize,
+}
+
+impl Other for Joined<'_> {
+    #[inline(always)]
+    fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
+        L::load_joined(self.all, self.first + point * W, self.second + point * W, self.by)
+    }
+}
+
+/// In some faces, with `points` points each: all that one of them has at once.
+#[derive(Clone, Copy)]
+struct Apart<'a> {
+    traces: Traces<'a>,
+    from: &'a Gathered,
+    points: usize,
+}
+
+impl Other for Apart<'_> {
+    #[inline(always)]
+    fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
+        let mut all = [L::zero(); W];
+        for source in self.from.sources() {
+            let at = if source.flip { self.points - 1 - point } else { point };
+            let there = &self.traces.all[self.traces.face(source.face as usize, self.points * W) + at * W..][..W];
+            for (all, there) in all.iter_mut().zip(there) {
+                *all = all.pick(there, &self.from.lane, source.lanes);
+            }
+        }
+        all
+    }
+}
+
+/// The same lane by lane, see [`load_lanes`].
+struct LaneByLane<'a> {
+    all: &'a [F8],
+    /// Where the first number of each lane is.
+    first: [usize; LANES],
+    /// How far the next point is from there.
+    step: [isize; LANES],
+}
+
+impl<'a> LaneByLane<'a> {
+    #[inline(always)]
+    fn new<const W: usize>(apart: &Apart<'a>) -> Self {
+        let Apart { traces, from, points } = *apart;
+        let stride = (W * LANES) as isize;
+        let (mut first, mut step) = ([0; LANES], [stride; LANES]);
+        for source in from.sources() {
+            let point = if source.flip { points - 1 } else { 0 };
+            let at = (traces.face(source.face as usize, points * W) + point * W) * LANES;
+            for lane in 0..LANES {
+                if source.lanes >> lane & 1 == 1 {
+                    first[lane] = at + usize::from(from.lane[lane]);
+                    step[lane] = if source.flip { -stride } else { stride };
+                }
+            }
+        }
+        Self { all: traces.all, first, step }
+    }
+}
+
+impl Other for LaneByLane<'_> {
+    #[inline(always)]
+    fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
+        let mut at = [0; LANES];
+        for lane in 0..LANES {
+            at[lane] = self.first[lane].wrapping_add_signed(point as isize * self.step[lane]);
+        }
+        load_lanes(self.all, &at)
+    }
+}
+
 /// The traces across a face of a block.
 #[derive(Clone, Copy)]
 enum Beyond<'a> {
-    /// [point][width], each lane's in the same lane.
-    Aligned(&'a [F8]),
-    /// In two runs of all traces, see [`Lanes::load_joined`].
-    Joined { all: &'a [F8], first: usize, second: usize, by: usize },
+    Aligned(Aligned<'a>),
+    Joined(Joined<'a>),
+    Apart(Apart<'a>),
 }
 
 impl Beyond<'_> {
-    /// The numbers of a point.
+    /// The numbers of a point, on a path that need not be fast.
     #[inline(always)]
     fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
+        match self {
+            Beyond::Aligned(other) => other.load(point),
+            Beyond::Joined(other) => other.load(point),
+            Beyond::Apart(other) => other.load(point),
+        }
+    }
+
+    /// Number k of a point with `width` numbers in one lane.
+    fn number(&self, point: usize, k: usize, width: usize, lane: usize) -> f64 {
+        let at = |point: usize| point * width + k;
         match *self {
-            Beyond::Aligned(traces) => load_array(&traces[point * W..][..W]),
-            Beyond::Joined { all, first, second, by } => L::load_joined(all, first + point * W, second + point * W, by),
+            Beyond::Aligned(Aligned(traces)) => traces[at(point)].0[lane],
+            Beyond::Joined(Joined { all, first, second, by }) => {
+                let (first, lane) = if lane + by < LANES { (first, lane + by) } else { (second, lane + by - LANES) };
+                all[first + at(point)].0[lane]
+            }
+            Beyond::Apart(Apart { traces, from, points }) => {
+                let there = from.across(lane);
+                let point = if there.flip { points - 1 - point } else { point };
+                traces.all[traces.face(there.face, points * width) + at(point)].0[there.lane]
+            }
         }
-    }
-
-    /// Number k of all points in one lane.
-    fn number(&self, k: usize, lane: usize) -> f64 {
-        match *self {
-            Beyond::Aligned(traces) => traces[k].0[lane],
-            Beyond::Joined { all, first, .. } if lane + self.by() < LANES => all[first + k].0[lane + self.by()],
-            Beyond::Joined { all, second, .. } => all[second + k].0[lane + self.by() - LANES],
-        }
-    }
-
-    /// By how many lanes it is moved.
-    fn by(&self) -> usize {
-        if let Beyond::Joined { by, .. } = self { *by } else { 0 }
-    }
-}
-
-/// Traces that lie anywhere, lane by lane, in the order of the points of this side.
-struct Gather<'a> {
-    traces: Traces<'a>,
-    from: &'a [Across; LANES],
-    /// Numbers of a trace.
-    width: usize,
-    /// [point][width], out.
-    out: &'a mut [F8],
-}
-
-impl Work for Gather<'_> {
-    type Out = ();
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        match self.width {
-            9 => self.with::<L, 9>(),
-            10 => self.with::<L, 10>(),
-            11 => self.with::<L, 11>(),
-            _ => self.with::<L, 12>(),
-        }
-    }
-}
-
-impl Gather<'_> {
-    #[inline(always)]
-    fn with<L: Lanes, const W: usize>(self) {
-        let out = self.out.as_chunks_mut::<W>().0;
-        let (m, stride) = (out.len(), (W * LANES) as isize);
-        let (mut first, mut step) = ([0; LANES], [stride; LANES]);
-        for lane in 0..LANES {
-            let there = &self.from[lane];
-            let point = if there.flip { m - 1 } else { 0 };
-            first[lane] = (self.traces.face(there.face, m * W) + point * W) * LANES + there.lane;
-            step[lane] = if there.flip { -stride } else { stride };
-        }
-        gather_run::<L, W>(self.traces.all, &first, &step, out);
     }
 }
 
@@ -173,8 +233,12 @@ impl Work for Faces<'_> {
             for face in 0..4 {
                 // One loop for each way in which the traces lie: none looks at it point by point.
                 match self.other[face] {
-                    Beyond::Aligned(_) => self.of_face::<L, _, W>(face, riemann),
-                    Beyond::Joined { .. } => self.of_face::<L, _, W>(face, riemann),
+                    Beyond::Aligned(other) => self.of_face::<L, _, _, W>(face, other, riemann),
+                    Beyond::Joined(other) => self.of_face::<L, _, _, W>(face, other, riemann),
+                    Beyond::Apart(other) if L::PICKS => self.of_face::<L, _, _, W>(face, other, riemann),
+                    Beyond::Apart(other) => {
+                        self.of_face::<L, _, _, W>(face, LaneByLane::new::<W>(&other), riemann);
+                    }
                 }
             }
         });
@@ -183,8 +247,8 @@ impl Work for Faces<'_> {
 
 impl Faces<'_> {
     #[inline(always)]
-    fn of_face<L: Lanes, R: Riemann, const W: usize>(&mut self, face: usize, riemann: &R) {
-        let (m, other) = (self.points, self.other[face]);
+    fn of_face<L: Lanes, O: Other, R: Riemann, const W: usize>(&mut self, face: usize, other: O, riemann: &R) {
+        let m = self.points;
         let density = L::splat(self.density);
         let own = &self.own.as_chunks::<W>().0[face * m..(face + 1) * m];
         let metric = self.metric.load::<L>();
@@ -273,21 +337,15 @@ pub(super) fn lift(place: Place, traces: Traces, nodes: &mut Arrays, mut sums: O
     let width = width(flux.has_shear(), metered);
     let length = m * width;
     let plan = &blocks.plan[block];
-    let mut other = [Beyond::Aligned(&[]); 4];
-    let mut room = &mut nodes.across[..];
-    for face in 0..4 {
-        other[face] = match plan[face].side {
-            Side::Aligned(there) => Beyond::Aligned(traces.faces(there, 1, length)),
+    let mut other = [Beyond::Aligned(Aligned(&[])); 4];
+    for (other, plan) in other.iter_mut().zip(plan) {
+        *other = match plan.side {
+            Side::Aligned(there) => Beyond::Aligned(Aligned(traces.faces(there, 1, length))),
             Side::Joined { first, second, by } => {
                 let [first, second] = [first, second].map(|there| traces.face(there, length));
-                Beyond::Joined { all: traces.all, first, second, by }
+                Beyond::Joined(Joined { all: traces.all, first, second, by })
             }
-            Side::Gathered(entry) => {
-                let (out, rest) = room.split_at_mut(length);
-                room = rest;
-                scheme.kernel.run(Gather { traces, from: &blocks.gathered[entry], width, out });
-                Beyond::Aligned(out)
-            }
+            Side::Gathered(entry) => Beyond::Apart(Apart { traces, from: &blocks.gathered[entry], points: m }),
         };
     }
     let own = traces.faces(4 * block, 4, length);
@@ -352,7 +410,7 @@ impl<'a> Place<'a> {
             Neighbour::Boundary(group) => Some(self.scheme.boundaries[group].flux(&minus, &at, self.stage.times)),
             Neighbour::Interface(_, material) => {
                 let beyond = &self.scheme.laws[material];
-                let plus = trace(&|k| other.number(point * own.len() + k, lane), -1.0, beyond);
+                let plus = trace(&|k| other.number(point, k, own.len(), lane), -1.0, beyond);
                 Some(interface(&minus, &plus, at.normal, [law.density(), beyond.density()]))
             }
             Neighbour::Cell(_) | Neighbour::Padding => None,

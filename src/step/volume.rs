@@ -52,8 +52,6 @@ pub struct Arrays {
     pub source: Vec<F8>,
     /// Lifted numbers: [face][face point][6].
     pub lift: Vec<F8>,
-    /// Traces across faces whose lanes lie apart: [face][point][width].
-    pub across: Vec<F8>,
     /// Internal variables that stand for the nodes, [node][variable], for the balance of energy; empty without memory.
     pub internal: Vec<F8>,
     /// The mass matrix, by node, where it is wanted.
@@ -76,7 +74,6 @@ impl Arrays {
             contravariant: zeros(4 * n),
             source: zeros(2 * n),
             lift: zeros(4 * 6 * m),
-            across: zeros(4 * m * width(true, true)),
             internal: zeros(variables * n),
             masses: zeros(n),
             weighted: zeros(4 * n),
