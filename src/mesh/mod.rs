@@ -1,5 +1,6 @@
 //! Quadrilateral meshes: geometry and groups only; a mesh knows nothing of a solver.
 
+mod axes;
 pub mod check;
 mod error;
 pub mod faces;
@@ -83,4 +84,14 @@ pub enum Link {
     },
     /// The boundary group with this index in [`Mesh::edge_groups`].
     Boundary(usize),
+}
+
+impl Link {
+    /// The cell on the other side.
+    pub fn cell(&self) -> Option<usize> {
+        match *self {
+            Link::Cell { cell, .. } => Some(cell),
+            Link::Boundary(_) => None,
+        }
+    }
 }

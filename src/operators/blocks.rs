@@ -189,8 +189,5 @@ impl Blocks {
 
 /// The cells across the faces of a cell.
 fn cells_of(links: &[Link; 4]) -> impl Iterator<Item = usize> {
-    links.iter().filter_map(|link| match link {
-        Link::Cell { cell, .. } => Some(*cell),
-        Link::Boundary(_) => None,
-    })
+    links.iter().filter_map(Link::cell)
 }

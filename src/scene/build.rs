@@ -30,7 +30,7 @@ const LEDGER_STEPS: usize = 10;
 /// # Errors
 /// Bad input, with its place.
 pub fn read_mesh(path: &Path) -> Result<Mesh> {
-    if store::is_meant_as_store(path) { mesh_file::read_mesh(path) } else { gmsh::read(path) }
+    if store::is_meant_as_store(path) { mesh_file::read_mesh(path) } else { Ok(gmsh::read(path)?.with_common_axes()) }
 }
 
 /// An expression as data of boundary or source.
