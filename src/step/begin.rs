@@ -136,7 +136,7 @@ impl Block<'_> {
         if !self.scheme.sources.is_empty() {
             self.source_at_nodes();
             let masses = &mut self.scratch.nodes.masses;
-            with_nodes!(line.m, M => kernel.run(volume::Masses::<'_, M> { line, metric, masses }));
+            with_nodes!(line.m, M => { kernel.run(volume::Masses::<'_, M> { line, metric, masses }); });
         }
         if !self.scheme.sources.is_empty() || self.state.has_displacement() {
             kernel.run(Extras(&mut self));
