@@ -105,18 +105,23 @@ fn with_halves<L: Lanes, const M: usize>(halves: &Halves, theta: L, arrays: Arra
 #[inline(always)]
 fn products<L: Lanes>(matrix: &[f64], input: &[[F8; 2]], out: &mut [[F8; 2]]) {
     let rows = input.len();
-    let mut r = 0;
-    while r < rows {
-        r += match rows - r {
-            2 | 4 => product::<L, 2>(&matrix[r * rows..], input, &mut out[r..]),
-            _ => product::<L, 3>(&matrix[r * rows..], input, &mut out[r..]),
-        };
+    let triples = if rows == 4 { 0 } else { rows / 3 };
+    for k in 0..triples {
+        product::<L, 3>(&matrix[3 * k * rows..], input, &mut out[3 * k..]);
+    }
+    let mut r = 3 * triples;
+    while r + 1 < rows {
+        product::<L, 2>(&matrix[r * rows..], input, &mut out[r..]);
+        r += 2;
+    }
+    if r < rows {
+        product::<L, 1>(&matrix[r * rows..], input, &mut out[r..]);
     }
 }
 
-/// The first K rows; K. Rows are worked on together: sums stay in registers and do not wait for each other.
+/// The first K rows. They are worked on together: sums stay in registers and do not wait for each other.
 #[inline(always)]
-fn product<L: Lanes, const K: usize>(matrix: &[f64], input: &[[F8; 2]], out: &mut [[F8; 2]]) -> usize {
+fn product<L: Lanes, const K: usize>(matrix: &[f64], input: &[[F8; 2]], out: &mut [[F8; 2]]) {
     let columns = input.len();
     let mut rows = [&[] as &[f64]; K];
     for (k, row) in rows.iter_mut().enumerate() {
@@ -135,7 +140,6 @@ fn product<L: Lanes, const K: usize>(matrix: &[f64], input: &[[F8; 2]], out: &mu
         sum[0].store(&mut out[0]);
         sum[1].store(&mut out[1]);
     }
-    K
 }
 
 #[inline(always)]

@@ -70,7 +70,7 @@ impl Block<'_> {
         self.scratch.phases.book(Phase::CurlFree, &mut clock);
         let Self { scheme, block, scratch, .. } = self;
         let history = History::Before(scheme.histories.of(&self.state.internal, block), internal);
-        *worst = worst.and(Examine { scheme, block, u, history, scratch }.judge(speed));
+        kernel.run(Examine { scheme, block, u, history, scratch, speed, worst });
     }
 }
 

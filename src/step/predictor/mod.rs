@@ -9,7 +9,7 @@ pub mod transfer;
 
 use super::history::recall;
 use super::{Method, Sweeps};
-use crate::lane::{self, Coefficient, F8, Kernel, Lanes, load_array, store_array};
+use crate::lane::{self, Coefficient, F8, Kernel, Lane, Lanes, Twin, load_array, store_array};
 use crate::material::Material;
 use crate::operators::PointMatrices;
 use rates::Rates;
@@ -196,19 +196,40 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         for (s, row) in rows.iter_mut().enumerate().take(last.to) {
             *row = self.row(&last.rates[s * last.from..(s + 1) * last.from]);
         }
-        for (p, mean_stress) in mean_stress.as_chunks_mut::<4>().0[..np].iter_mut().enumerate() {
-            let mut sum = [L::zero(); 4];
+        // Two points at a time as in `sample`. Sources do not act on F: from U^n itself.
+        let mean_stress = &mut mean_stress.as_chunks_mut::<4>().0[..np];
+        let (rows, twins) = (&rows[..last.to], if M::INTERNAL.is_empty() { np / 2 * 2 } else { 0 });
+        let (pairs, rest) = mean_stress.split_at_mut(twins);
+        for (pair, mean_stress) in pairs.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+            let p = 2 * pair;
+            let mut sum = [Twin::<L>::zero(); 4];
             for (row, weight) in rows.iter().zip(self.weights) {
-                // Sources do not act on F: from U^n itself.
+                let row = &row[..last.from];
+                let f =
+                    lane::twins(state::<L, 0, 4>(start, before, row, p), state::<L, 0, 4>(start, before, row, p + 1));
+                add(*weight, self.law.stress(f, &mut []), &mut sum);
+            }
+            let [one, two] = lane::apart(sum);
+            store_array(one, &mut mean_stress[0]);
+            store_array(two, &mut mean_stress[1]);
+        }
+        for (k, mean_stress) in rest.iter_mut().enumerate() {
+            let (p, mut sum) = (twins + k, [L::zero(); 4]);
+            for (row, weight) in rows.iter().zip(self.weights) {
                 let f = state::<L, 0, 4>(start, before, &row[..last.from], p);
                 let mut internal = recall::<L, M>(self.law, self.internal, p);
-                let (weight, stress) = (L::splat(*weight), self.law.stress(f, &mut internal[..M::INTERNAL.len()]));
-                for i in 0..4 {
-                    sum[i] = weight.mul_add(stress[i], sum[i]);
-                }
+                add(*weight, self.law.stress(f, &mut internal[..M::INTERNAL.len()]), &mut sum);
             }
             store_array(sum, mean_stress);
         }
+    }
+}
+
+/// sum += weight x.
+#[inline(always)]
+fn add<L: Lane>(weight: f64, x: [L; 4], sum: &mut [L; 4]) {
+    for (sum, x) in sum.iter_mut().zip(x) {
+        *sum = L::splat(weight).mul_add(x, *sum);
     }
 }
 
