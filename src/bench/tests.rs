@@ -95,8 +95,10 @@ fn the_curl_free_projection_takes_the_flops_of_its_halves() {
             let n = (degree + 1) * (degree + 1);
             let (even, odd, middle) = (n.div_ceil(2) as f64, (n / 2) as f64, (n % 2) as f64);
             // For each of four fields a sum and a difference a pair of nodes and 2 more behind the products, then theta of
-            // them is subtracted. Products of both rows of F with two square matrices, two rows a node.
-            let product = 4.0 * (odd * 8.0 + middle * 2.0) + 2.0 * 2.0 * (4.0 * even * even + 4.0 * odd * odd);
+            // them is subtracted. Products of both rows of F with two square matrices, two rows a node; at four nodes sums do
+            // not begin from zero.
+            let mut product = 4.0 * (odd * 8.0 + middle * 2.0) + 2.0 * 2.0 * (4.0 * even * even + 4.0 * odd * odd);
+            product -= if degree == 1 { 2.0 * 2.0 * (even + odd) } else { 0.0 };
             // theta: its argument 1 mul 1 div; k 1 mul 2 add, r 1 fma, the series 11 fma and 2 powers, q 1 fma, and 1 add 1
             // fma.
             let theta = 2.0 + 3.0 + 2.0 + 2.0 * 11.0 + 2.0 + 2.0 + 3.0;

@@ -66,9 +66,49 @@ pub fn project<L: Lanes, const M: usize>(
     }
 }
 
+/// Both rows of F at four nodes, a row in registers, see [`Halves`].
+#[inline(always)]
+fn with_small_halves<L: Lanes>(halves: &Halves, theta: L, u: &mut [F8]) {
+    let matrices = [halves.even.data.first_chunk(), halves.odd.data.first_chunk()];
+    let [Some(even), Some(odd)] = matrices else { return };
+    let minus = -theta;
+    for f in &mut u.as_chunks_mut::<8>().0[..2] {
+        let (mut sums, mut differences) = ([L::zero(); 4], [L::zero(); 4]);
+        for k in 0..4 {
+            let (one, two) = (L::load(&f[PAIRS[k][0]]), L::load(&f[PAIRS[k][1]]));
+            (sums[k], differences[k]) = (one + two, one - two);
+        }
+        let (sums, differences) = (times(even, sums), times(odd, differences));
+        for k in 0..4 {
+            let [one, two] = PAIRS[k];
+            minus.mul_add(sums[k] + differences[k], L::load(&f[one])).store(&mut f[one]);
+            minus.mul_add(sums[k] - differences[k], L::load(&f[two])).store(&mut f[two]);
+        }
+    }
+}
+
+/// Opposite nodes of four, in both directions.
+const PAIRS: [[usize; 2]; 4] = [[0, 3], [1, 2], [4, 7], [5, 6]];
+
+/// A product with a 4 x 4 matrix.
+#[inline(always)]
+fn times<L: Lanes>(matrix: &[f64; 16], x: [L; 4]) -> [L; 4] {
+    let mut out = [L::zero(); 4];
+    for (out, row) in out.iter_mut().zip(&matrix.as_chunks::<4>().0[..4]) {
+        *out = L::splat(row[0]) * x[0];
+        for k in 1..4 {
+            *out = L::splat(row[k]).mul_add(x[k], *out);
+        }
+    }
+    out
+}
+
 /// Nodes a and n - 1 - a by their sum and difference, see [`Halves`]. Numbers of both rows of F stand side by side.
 #[inline(always)]
 fn with_halves<L: Lanes, const M: usize>(halves: &Halves, theta: L, arrays: Arrays, u: &mut [F8]) {
+    if M == 2 {
+        return with_small_halves::<L>(halves, theta, u);
+    }
     let n = M * M;
     let (evens, odds) = (n.div_ceil(2), n / 2);
     let (even, odd) = arrays.weighted.as_chunks_mut::<2>().0[..2 * n].split_at_mut(2 * evens);
@@ -105,7 +145,7 @@ fn with_halves<L: Lanes, const M: usize>(halves: &Halves, theta: L, arrays: Arra
 #[inline(always)]
 fn products<L: Lanes>(matrix: &[f64], input: &[[F8; 2]], out: &mut [[F8; 2]]) {
     let rows = input.len();
-    let triples = if rows == 4 { 0 } else { rows / 3 };
+    let triples = rows / 3;
     for k in 0..triples {
         product::<L, 3>(&matrix[3 * k * rows..], input, &mut out[3 * k..]);
     }

@@ -139,9 +139,9 @@ fn factored<L: Lanes, C: Coefficient, const K: usize, const BY_FIELD: bool>(
             for d in 0..c {
                 let entry = second[s * c + d].lanes::<L>();
                 let node = i * c + d;
-                for k in 0..K {
+                for (k, sum) in sum.iter_mut().enumerate() {
                     let at = if BY_FIELD { k * c * c + node } else { node * K + k };
-                    sum[k] = entry.mul_add(L::load(&input[at]), sum[k]);
+                    *sum = entry.mul_add(L::load(&input[at]), *sum);
                 }
             }
             store_array(sum, &mut between[i * r + s]);
