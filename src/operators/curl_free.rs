@@ -22,9 +22,40 @@ pub type CurlPool = Pool<Matrix<f64>, Matrix<F8>>;
 pub struct CurlFree {
     /// C by class of congruent cells.
     pub pool: CurlPool,
+    /// For each shared matrix of the pool its [`Halves`], where cells of the class are parallelograms.
+    pub halves: Vec<Option<Halves>>,
+}
+
+/// C C^T W of a parallelogram, by parity.
+///
+/// Half a turn about the middle leaves a parallelogram as it is and takes node a to (N+1)^2 - 1 - a. So the parts
+/// F_a + F_a' and F_a - F_a' of each pair of nodes are projected on their own, by matrices of half the size, on rows
+/// (direction, a), a up to the middle. They are so small that one product is no more work than C^T W and then C.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Halves {
+    /// On F_a + F_a' of ((N+1)^2 + 1)/2 nodes; of the node in the middle, where there is one, on F itself.
+    pub even: Matrix<f64>,
+    /// On F_a - F_a' of (N+1)^2/2 nodes.
+    pub odd: Matrix<f64>,
 }
 
 impl CurlFree {
+    /// From the matrices of all blocks.
+    pub fn new(pool: CurlPool, mesh: &Mesh, blocks: &Blocks, line: &Line) -> Self {
+        let mut halves = vec![None; pool.shared.len()];
+        let mut seen = vec![false; pool.shared.len()];
+        for (share, cells) in pool.share.iter().zip(&blocks.cells) {
+            if let Share::Shared(k) = *share
+                && !std::mem::replace(&mut seen[k], true)
+            {
+                let corners = mesh.corners(cells[0]);
+                let masses: Vec<f64> = (0..line.m * line.m).map(|a| mass(&corners, line, a)).collect();
+                halves[k] = Halves::of(&pool.shared[k], &masses);
+            }
+        }
+        Self { pool, halves }
+    }
+
     /// Builds C for all blocks.
     pub fn matrices(mesh: &Mesh, blocks: &Blocks, line: &Line) -> CurlPool {
         let size = mesh.nodes.iter().flatten().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
@@ -54,6 +85,34 @@ impl CurlFree {
     pub fn bytes(&self) -> usize {
         self.pool.shared.iter().map(|c| c.data.len() * 8).sum::<usize>()
             + self.pool.own.iter().map(|c| c.data.len() * 64).sum::<usize>()
+            + self.halves.iter().flatten().map(|h| (h.even.data.len() + h.odd.data.len()) * 8).sum::<usize>()
+    }
+}
+
+impl Halves {
+    /// Those of a complement, none where half a turn changes the projection.
+    fn of(c: &Matrix<f64>, masses: &[f64]) -> Option<Self> {
+        let n = masses.len();
+        let full = |r: usize, s: usize| {
+            let products = c.row(r).iter().zip(c.row(s)).map(|(a, b)| a * b);
+            products.sum::<f64>() * masses[s % n]
+        };
+        let turned = |r: usize| r / n * n + (n - 1 - r % n);
+        // The entries of a projection are of order one.
+        let same = |r: usize, s: usize| (full(r, s) - full(turned(r), turned(s))).abs() <= RANK_TOLERANCE;
+        if !(0..2 * n).all(|r| (0..2 * n).all(|s| same(r, s))) {
+            return None;
+        }
+        let half = |nodes: usize, sign: f64| {
+            let row = |k: usize| k / nodes * n + k % nodes;
+            let entry = |r: usize, s: usize| {
+                let mean = |s: usize| 0.5 * (full(r, s) + sign * full(turned(r), s));
+                if s == turned(s) { mean(s) } else { 0.5 * (mean(s) + sign * mean(turned(s))) }
+            };
+            let all = (0..2 * nodes).flat_map(|r| (0..2 * nodes).map(move |s| (r, s)));
+            Matrix::new(2 * nodes, 2 * nodes, all.map(|(r, s)| entry(row(r), row(s))).collect())
+        };
+        Some(Self { even: half(n.div_ceil(2), 1.0), odd: half(n / 2, -1.0) })
     }
 }
 

@@ -72,7 +72,7 @@ impl Operators {
     pub fn assemble(mesh: &Mesh, line: Line, blocks: Blocks, needs: &Needs, stored: Stored) -> Self {
         let geometry = Geometry::new(mesh, &blocks);
         let points = needs.sampling.zip(stored.points).map(|(s, pool)| Points::new(mesh, &blocks, &line, s, pool));
-        let curl_free = stored.curl_free.map(|pool| CurlFree { pool });
+        let curl_free = stored.curl_free.map(|pool| CurlFree::new(pool, mesh, &blocks, &line));
         Self { degree: needs.degree, line, blocks, geometry, points, curl_free }
     }
 

@@ -1,10 +1,9 @@
 //! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
 
 use super::balance::{self, Sums};
-use super::dense::interleave;
 use super::phase::Clock;
 use super::predictor::Predictor;
-use super::predictor::transfer::{ToNodes, ToPoints};
+use super::predictor::transfer::{FieldsToPoints, ToNodes};
 use super::stage::AtNodes;
 use super::sums::Terms;
 use super::volume::{self, with_nodes};
@@ -136,7 +135,7 @@ impl Block<'_> {
         if !self.scheme.sources.is_empty() {
             self.source_at_nodes();
             let masses = &mut self.scratch.nodes.masses;
-            with_nodes!(line.m, M => kernel.run(volume::Masses::<'_, M> { line, metric, masses }));
+            with_nodes!(line.m, M => { kernel.run(volume::Masses::<'_, M> { line, metric, masses }); });
         }
         if !self.scheme.sources.is_empty() || self.state.has_displacement() {
             kernel.run(Extras(&mut self));
@@ -204,9 +203,9 @@ impl Block<'_> {
         let (kernel, n, np) = (self.scheme.kernel, self.scheme.operators.nodes(), matrices.points());
         let stride = self.rate.len();
         let start = &self.state.u[stride * self.block..stride * (self.block + 1)];
-        interleave::<6>(start, n, &mut self.scratch.nodes.stage);
-        let (nodes, arrays) = (&self.scratch.nodes.stage[..6 * n], &mut self.scratch.points);
-        kernel.run(ToPoints::<C, 6> { matrices, nodes, between: &mut arrays.between, points: &mut arrays.start });
+        let (nodes, arrays) = (&mut self.scratch.nodes.stage, &mut self.scratch.points);
+        let (fields, between, points_of) = (&start[..6 * n], &mut arrays.between, &mut arrays.start);
+        kernel.run(FieldsToPoints::<C, 6> { matrices, fields, nodes, between, points: points_of });
         if !self.scheme.sources.is_empty() {
             self.source_at_points(points, np);
         }

@@ -1,72 +1,197 @@
-//! Application of LCF, F <- F - theta C (C^T W F), to one block.
+//! Application of LCF, F <- F - theta C C^T W F, to one block.
 
-use crate::lane::{Coefficient, F8, Lane, Lanes};
-use crate::operators::{Matrix, Pool, Share};
+use super::volume::Masses;
+use crate::lane::{Coefficient, F8, Lane, Lanes, Work};
+use crate::operators::curl_free::Halves;
+use crate::operators::{CurlFree, Matrix, Share};
 
 /// Memory of the projection.
 pub struct Arrays<'a> {
-    /// W F, [row i][direction][node].
+    /// W F, [row i][direction][node]; or what of F goes into the products of [`Halves`].
     pub weighted: &'a mut [F8],
-    /// C^T W F, [row i][column].
+    /// C^T W F, [row i][column]; or what comes out of the products of [`Halves`].
     pub coefficients: &'a mut [F8],
 }
 
-/// (-1)^k / (k + 1)!, the coefficients of (1 - exp(-y)) / y.
-const SERIES: [f64; 16] = {
-    let (mut out, mut k) = ([1.0; 16], 1);
-    while k < 16 {
-        out[k] = -out[k - 1] / (k + 1) as f64;
-        k += 1;
+/// (-1)^j / (j + 2)!: 1 - exp(-r) = r - r^2 sum_j of these r^j.
+const SERIES: [f64; 12] = {
+    let (mut out, mut j) = ([0.5; 12], 1);
+    while j < 12 {
+        out[j] = -out[j - 1] / (j + 2) as f64;
+        j += 1;
     }
     out
 };
 
 /// 1 - exp(-x) for x >= 0, to 1e-15 relative.
 ///
-/// q(y) = 1 - exp(-y) by its series at y = x/64 (x beyond 40, where it is 1, is cut off; the first term left out is
-/// below 1e-15 of the first one), then six times q(2y) = q (2 - q). The series goes by pairs, pairs of pairs and so on
-/// (Estrin's scheme): a term that waits for the one before it would take a third of the projection at low degrees.
+/// x = k ln 2 + r, |r| <= ln 2 / 2 (x beyond 40, where it is 1, is cut off): 1 - 2^-k + 2^-k q(r), q(r) = 1 - exp(-r) by its
+/// series, whose first term left out is 1e-17 of the first one. The series goes by pairs, pairs of pairs and so on (Estrin's
+/// scheme): a term that waits for the one before it would take a third of the projection at low degrees.
 #[inline(always)]
 pub fn relaxation<L: Lane>(x: L) -> L {
-    let y = x.min(L::splat(40.0)) * L::splat(1.0 / 64.0);
-    let mut sums = [L::zero(); 8];
-    for (k, sum) in sums.iter_mut().enumerate() {
-        *sum = y.mul_add(L::splat(SERIES[2 * k + 1]), L::splat(SERIES[2 * k]));
+    let x = x.min(L::splat(40.0));
+    // -k.
+    let minus = (x * L::splat(-std::f64::consts::LOG2_E)).nearest();
+    let r = minus.mul_add(L::splat(std::f64::consts::LN_2), x);
+    let (r2, mut pairs) = (r * r, [L::zero(); 6]);
+    for (j, pair) in pairs.iter_mut().enumerate() {
+        *pair = r.mul_add(L::splat(-SERIES[2 * j + 1]), L::splat(-SERIES[2 * j]));
     }
-    let (mut power, mut count) = (y, 8);
-    while count > 1 {
-        power = power * power;
-        count /= 2;
-        for k in 0..count {
-            sums[k] = power.mul_add(sums[2 * k + 1], sums[2 * k]);
-        }
-    }
-    let mut q = sums[0] * y;
-    for _ in 0..6 {
-        q = q * (L::splat(2.0) - q);
-    }
-    q
+    let [a, b, c, d, e, f] = pairs;
+    let (a, c, e, r4) = (r2.mul_add(b, a), r2.mul_add(d, c), r2.mul_add(f, e), r2 * r2);
+    let q = r2.mul_add(r4.mul_add(r4.mul_add(e, c), a), r);
+    let power = minus.power_of_two();
+    power.mul_add(q, L::splat(1.0) - power)
 }
 
-/// Relaxes the rows of F in `u` towards gradients by the share `theta` of each lane.
+/// Relaxes the rows of F in `u` of a block towards gradients by the share `theta` of each lane; finds the mass matrix where it
+/// is wanted.
 #[inline(always)]
-pub fn project<L: Lanes>(
-    pool: &Pool<Matrix<f64>, Matrix<F8>>,
+pub fn project<L: Lanes, const M: usize>(
+    curl_free: &CurlFree,
     block: usize,
     theta: L,
-    mass: &[F8],
+    masses: Masses<'_, M>,
     arrays: Arrays,
     u: &mut [F8],
 ) {
+    let pool = &curl_free.pool;
     match pool.share[block] {
-        Share::Shared(k) => with_matrix::<L, _>(&pool.shared[k], theta, mass, arrays, u),
-        Share::Own(k) => with_matrix::<L, _>(&pool.own[k], theta, mass, arrays, u),
+        Share::Shared(k) => match &curl_free.halves[k] {
+            Some(halves) => with_halves::<L, M>(halves, theta, arrays, u),
+            None => with_matrix::<L, _, M>(&pool.shared[k], theta, masses, arrays, u),
+        },
+        Share::Own(k) => with_matrix::<L, _, M>(&pool.own[k], theta, masses, arrays, u),
+    }
+}
+
+/// Both rows of F at four nodes, a row in registers, see [`Halves`].
+#[inline(always)]
+fn with_small_halves<L: Lanes>(halves: &Halves, theta: L, u: &mut [F8]) {
+    let matrices = [halves.even.data.first_chunk(), halves.odd.data.first_chunk()];
+    let [Some(even), Some(odd)] = matrices else { return };
+    let minus = -theta;
+    for f in &mut u.as_chunks_mut::<8>().0[..2] {
+        let (mut sums, mut differences) = ([L::zero(); 4], [L::zero(); 4]);
+        for k in 0..4 {
+            let (one, two) = (L::load(&f[PAIRS[k][0]]), L::load(&f[PAIRS[k][1]]));
+            (sums[k], differences[k]) = (one + two, one - two);
+        }
+        let (sums, differences) = (times(even, sums), times(odd, differences));
+        for k in 0..4 {
+            let [one, two] = PAIRS[k];
+            minus.mul_add(sums[k] + differences[k], L::load(&f[one])).store(&mut f[one]);
+            minus.mul_add(sums[k] - differences[k], L::load(&f[two])).store(&mut f[two]);
+        }
+    }
+}
+
+/// Opposite nodes of four, in both directions.
+const PAIRS: [[usize; 2]; 4] = [[0, 3], [1, 2], [4, 7], [5, 6]];
+
+/// A product with a 4 x 4 matrix.
+#[inline(always)]
+fn times<L: Lanes>(matrix: &[f64; 16], x: [L; 4]) -> [L; 4] {
+    let mut out = [L::zero(); 4];
+    for (out, row) in out.iter_mut().zip(&matrix.as_chunks::<4>().0[..4]) {
+        *out = L::splat(row[0]) * x[0];
+        for k in 1..4 {
+            *out = L::splat(row[k]).mul_add(x[k], *out);
+        }
+    }
+    out
+}
+
+/// Nodes a and n - 1 - a by their sum and difference, see [`Halves`]. Numbers of both rows of F stand side by side.
+#[inline(always)]
+fn with_halves<L: Lanes, const M: usize>(halves: &Halves, theta: L, arrays: Arrays, u: &mut [F8]) {
+    if M == 2 {
+        return with_small_halves::<L>(halves, theta, u);
+    }
+    let n = M * M;
+    let (evens, odds) = (n.div_ceil(2), n / 2);
+    let (even, odd) = arrays.weighted.as_chunks_mut::<2>().0[..2 * n].split_at_mut(2 * evens);
+    let fields = &mut u[..4 * n];
+    for (k, f) in fields.chunks_exact(n).enumerate() {
+        let (i, axis) = (k / 2, k % 2);
+        for a in 0..odds {
+            let (one, two) = (L::load(&f[a]), L::load(&f[n - 1 - a]));
+            (one + two).store(&mut even[axis * evens + a][i]);
+            (one - two).store(&mut odd[axis * odds + a][i]);
+        }
+        if evens > odds {
+            even[axis * evens + odds][i] = f[odds];
+        }
+    }
+    let (even_out, odd_out) = arrays.coefficients.as_chunks_mut::<2>().0[..2 * n].split_at_mut(2 * evens);
+    products::<L>(&halves.even.data[..4 * evens * evens], even, even_out);
+    products::<L>(&halves.odd.data[..4 * odds * odds], odd, odd_out);
+    let minus = -theta;
+    for (k, f) in fields.chunks_exact_mut(n).enumerate() {
+        let (i, axis) = (k / 2, k % 2);
+        for a in 0..odds {
+            let (one, two) = (L::load(&even_out[axis * evens + a][i]), L::load(&odd_out[axis * odds + a][i]));
+            minus.mul_add(one + two, L::load(&f[a])).store(&mut f[a]);
+            minus.mul_add(one - two, L::load(&f[n - 1 - a])).store(&mut f[n - 1 - a]);
+        }
+        if evens > odds {
+            minus.mul_add(L::load(&even_out[axis * evens + odds][i]), L::load(&f[odds])).store(&mut f[odds]);
+        }
+    }
+}
+
+/// out = matrix input, pairs of numbers each. Rows are two a node: an even number.
+#[inline(always)]
+fn products<L: Lanes>(matrix: &[f64], input: &[[F8; 2]], out: &mut [[F8; 2]]) {
+    let rows = input.len();
+    let triples = rows / 3;
+    for k in 0..triples {
+        product::<L, 3>(&matrix[3 * k * rows..], input, &mut out[3 * k..]);
+    }
+    let mut r = 3 * triples;
+    while r + 1 < rows {
+        product::<L, 2>(&matrix[r * rows..], input, &mut out[r..]);
+        r += 2;
+    }
+    if r < rows {
+        product::<L, 1>(&matrix[r * rows..], input, &mut out[r..]);
+    }
+}
+
+/// The first K rows. They are worked on together: sums stay in registers and do not wait for each other.
+#[inline(always)]
+fn product<L: Lanes, const K: usize>(matrix: &[f64], input: &[[F8; 2]], out: &mut [[F8; 2]]) {
+    let columns = input.len();
+    let mut rows = [&[] as &[f64]; K];
+    for (k, row) in rows.iter_mut().enumerate() {
+        *row = &matrix[k * columns..][..columns];
+    }
+    let mut sum = [[L::zero(); 2]; K];
+    for (column, pair) in input.iter().enumerate() {
+        let (one, two) = (L::load(&pair[0]), L::load(&pair[1]));
+        for k in 0..K {
+            let entry = L::splat(rows[k][column]);
+            sum[k][0] = entry.mul_add(one, sum[k][0]);
+            sum[k][1] = entry.mul_add(two, sum[k][1]);
+        }
+    }
+    for (out, sum) in out[..K].iter_mut().zip(&sum) {
+        sum[0].store(&mut out[0]);
+        sum[1].store(&mut out[1]);
     }
 }
 
 #[inline(always)]
-fn with_matrix<L: Lanes, C: Coefficient>(matrix: &Matrix<C>, theta: L, mass: &[F8], arrays: Arrays, u: &mut [F8]) {
-    let (rows, columns, n) = (matrix.rows, matrix.columns, mass.len());
+fn with_matrix<L: Lanes, C: Coefficient, const M: usize>(
+    matrix: &Matrix<C>,
+    theta: L,
+    masses: Masses<'_, M>,
+    arrays: Arrays,
+    u: &mut [F8],
+) {
+    let (rows, columns, n) = (matrix.rows, matrix.columns, M * M);
+    let mass = masses.run::<L>();
     let Arrays { weighted, coefficients } = arrays;
     for (weighted, u) in weighted.chunks_exact_mut(n).zip(u.chunks_exact(n)).take(4) {
         for a in 0..n {
@@ -157,13 +282,70 @@ fn subtract<L: Lanes, C: Coefficient, const K: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lane::Kernel;
+    use crate::mesh::{Mesh, links, rectangle};
+    use crate::operators::{Needs, Operators};
+    use crate::step::volume::{self, with_nodes};
+
+    struct Project<'a, const M: usize>(&'a Operators, &'a mut [F8]);
+
+    impl<const M: usize> Work for Project<'_, M> {
+        type Out = ();
+        #[inline(always)]
+        fn run<L: Lanes>(self) {
+            let Self(operators, u) = self;
+            let mut nodes = volume::Arrays::new(M, 6, 0);
+            let (line, metric) = (&operators.line, &operators.geometry.blocks[0]);
+            let masses = Masses::<'_, M> { line, metric, masses: &mut nodes.masses };
+            let arrays = Arrays { weighted: &mut nodes.weighted, coefficients: &mut nodes.coefficients };
+            project::<L, M>(operators.curl_free.as_ref().unwrap(), 0, L::splat(1.0), masses, arrays, u);
+        }
+    }
+
+    /// 4 x 2 cells, whose nodes are moved.
+    fn mesh(place: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
+        let mut mesh = rectangle([4.0, 2.0], [4, 2]).unwrap();
+        mesh.nodes.iter_mut().for_each(|x| *x = place(*x));
+        mesh
+    }
+
+    #[test]
+    fn on_all_cells_it_is_the_projection_of_a_single_one() {
+        let sheared = mesh(|x| [x[0] + 0.3 * x[1], 0.7 * x[1]]);
+        // Congruent, but not the same after half a turn.
+        let trapezoids = mesh(|x| [x[0], x[1] + if x[1] == 1.0 { 0.1 * (1.0 - 2.0 * (x[0] % 2.0)) } else { 0.0 }]);
+        let different = mesh(|x| [x[0] + 0.1 * (5.0 * x[1]).sin(), x[1] + 0.1 * (3.0 * x[0]).cos()]);
+        for (mesh, by_halves) in [(sheared, true), (trapezoids, false), (different, false)] {
+            for degree in 1..=6 {
+                let needs = Needs { degree, sampling: None, curl_free: true };
+                let operators = Operators::build(&mesh, &links(&mesh).unwrap(), &[0; 8], &needs).unwrap();
+                let (curl_free, n) = (operators.curl_free.as_ref().unwrap(), operators.nodes());
+                assert_eq!(curl_free.halves.iter().any(Option::is_some), by_halves);
+                let u: Vec<F8> =
+                    (0..4 * n).map(|k| F8(std::array::from_fn(|l| ((7 * k + 3 * l) as f64).sin()))).collect();
+                for kernel in Kernel::NAMES.iter().map(|(_, kernel)| *kernel) {
+                    let mut out = u.clone();
+                    with_nodes!(operators.line.m, M => kernel.run(Project::<'_, M>(&operators, &mut out)));
+                    for lane in 0..8 {
+                        let mut f: Vec<f64> = u.iter().map(|u| u.0[lane]).collect();
+                        let masses: Vec<f64> = operators.geometry.masses(&operators.line, 0, lane).collect();
+                        curl_free.project(0, lane, |a| masses[a], &mut f);
+                        for (f, out) in f.iter().zip(&out) {
+                            // Sums of up to 98 numbers of order one.
+                            assert!((f - out.0[lane]).abs() < 1e-13, "S{degree} {kernel:?}: {f} {out:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
 
     #[test]
     fn relaxation_is_one_minus_exp_to_rounding_on_its_whole_range() {
         for i in 0..100_000 {
             let x = 10f64.powf(-12.0 + 15.0 * i as f64 / 1e5);
             let relative = (relaxation(x) / -(-x).exp_m1() - 1.0).abs();
-            // Six doublings, each with two roundings, halved on the way for small x: measured 8e-16.
+            // Roundings of r, of q and of the sum, which may be a third of its terms.
             assert!(relative < 2e-15, "x = {x}: {relative:e}");
         }
         assert_eq!(relaxation(0.0), 0.0);

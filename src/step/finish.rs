@@ -63,14 +63,31 @@ impl Block<'_> {
         kernel.run(Update(&mut self, u));
         self.scratch.phases.book(Phase::Corrector, &mut clock);
         if self.scheme.curl_rate.is_some() {
-            let masses = &mut self.scratch.nodes.masses;
-            with_nodes!(line.m, M => kernel.run(Masses::<'_, M> { line, metric, masses }));
-            kernel.run(Project(&mut self, u));
+            self.meter(1.0, u);
+            with_nodes!(line.m, M => kernel.run(Project::<'_, '_, M>(&mut self, u)));
+            self.meter(-1.0, u);
         }
         self.scratch.phases.book(Phase::CurlFree, &mut clock);
         let Self { scheme, block, scratch, .. } = self;
         let history = History::Before(scheme.histories.of(&self.state.internal, block), internal);
-        *worst = worst.and(Examine { scheme, block, u, history, scratch }.judge(speed));
+        kernel.run(Examine { scheme, block, u, history, scratch, speed, worst });
+    }
+}
+
+/// Adds a factor times the strain energy of a block to what LCF dissipates.
+struct Meter<'a, 'b>(&'a mut Block<'b>, f64, &'a [F8]);
+
+impl Work for Meter<'_, '_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self(block, factor, next) = self;
+        let law = &block.scheme.laws[block.scheme.operators.blocks.material[block.block]];
+        let (mass, internal) = (&block.scratch.nodes.masses, &block.scratch.nodes.internal);
+        let energy = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, next, internal));
+        if let Some(sums) = block.sums.as_mut() {
+            balance::add(L::splat(factor), energy, &mut sums.curl_dissipation);
+        }
     }
 }
 
@@ -86,17 +103,31 @@ impl Work for Update<'_, '_> {
 }
 
 /// LCF of a block.
-struct Project<'a, 'b>(&'a mut Block<'b>, &'a mut [F8]);
+struct Project<'a, 'b, const M: usize>(&'a mut Block<'b>, &'a mut [F8]);
 
-impl Work for Project<'_, '_> {
+impl<const M: usize> Work for Project<'_, '_, M> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        self.0.project::<L>(self.1);
+        self.0.project::<L, M>(self.1);
     }
 }
 
 impl Block<'_> {
+    /// Adds `factor` times the strain energy of `next` to what LCF dissipates, where that is metered.
+    fn meter(&mut self, factor: f64, next: &[F8]) {
+        if self.sums.is_none() {
+            return;
+        }
+        let (scheme, operators, nodes) = (self.scheme, &self.scheme.operators, &mut self.scratch.nodes);
+        let (line, metric) = (&operators.line, &operators.geometry.blocks[self.block]);
+        let masses = &mut nodes.masses;
+        with_nodes!(line.m, M => { scheme.kernel.run(Masses::<'_, M> { line, metric, masses }); });
+        let variables = scheme.laws[operators.blocks.material[self.block]].internal().len();
+        scheme.histories.at_nodes(&self.state.internal, self.block, variables, &mut nodes.internal);
+        scheme.kernel.run(Meter(self, factor, next));
+    }
+
     /// U^(n+1) = U^n + dt sum_s b_s k_s.
     #[inline(always)]
     fn update<L: Lanes>(&mut self, next: &mut [F8]) {
@@ -109,28 +140,15 @@ impl Block<'_> {
 
     /// LCF with theta = 1 - exp(-alpha c dt / h), c the cell's largest current speed.
     #[inline(always)]
-    fn project<L: Lanes>(&mut self, next: &mut [F8]) {
+    fn project<L: Lanes, const M: usize>(&mut self, next: &mut [F8]) {
         let operators = &self.scheme.operators;
         let (Some(rate), Some(curl_free)) = (self.scheme.curl_rate, &operators.curl_free) else { return };
-        let (c, h) = (&self.survey.speed[self.block], &operators.geometry.blocks[self.block].h);
-        let decay = L::load(c) * L::splat(rate * self.stage.dt) / L::load(h);
-        let theta = curl::relaxation(decay);
-        let law = &self.scheme.laws[operators.blocks.material[self.block]];
-        let one = L::splat(1.0);
+        let (c, metric) = (&self.survey.speed[self.block], &operators.geometry.blocks[self.block]);
+        let theta = curl::relaxation(L::load(c) * L::splat(rate * self.stage.dt) / L::load(&metric.h));
         let nodes = &mut self.scratch.nodes;
-        let mass = &nodes.masses[..];
-        if let Some(sums) = self.sums.as_mut() {
-            let variables = law.internal().len();
-            self.scheme.histories.at_nodes(&self.state.internal, self.block, variables, &mut nodes.internal);
-            let before = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, next, &nodes.internal));
-            balance::add(one, before, &mut sums.curl_dissipation);
-        }
+        let masses = Masses::<'_, M> { line: &operators.line, metric, masses: &mut nodes.masses };
         let arrays = curl::Arrays { weighted: &mut nodes.weighted, coefficients: &mut nodes.coefficients };
-        curl::project::<L>(&curl_free.pool, self.block, theta, mass, arrays, next);
-        if let Some(sums) = self.sums.as_mut() {
-            let after = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, next, &nodes.internal));
-            balance::add(-one, after, &mut sums.curl_dissipation);
-        }
+        curl::project::<L, M>(curl_free, self.block, theta, masses, arrays, next);
     }
 }
 

@@ -1,10 +1,10 @@
 //! The health of a state: current wave speeds (for dt and LCF), min J, and where stability was lost.
 
 use super::history::{recall, remember};
-use super::predictor::{self, transfer::ToPoints};
+use super::predictor::{self, transfer::FieldsToPoints};
 use super::volume;
-use super::{Phase, Scheme, Scratch, Work as Memory, dense, with_scratch};
-use crate::lane::{Coefficient, F8, Lanes, Work};
+use super::{Phase, Scheme, Scratch, Work as Memory, with_scratch};
+use crate::lane::{self, Coefficient, F8, LANES, Lane, Lanes, Twin, Work};
 use crate::material::Material;
 use crate::operators::{Matrix, PointMatrices, Share};
 use crate::state::State;
@@ -62,32 +62,41 @@ impl std::fmt::Display for LossKind {
 pub(super) struct Worst {
     /// The first block that lost stability; `usize::MAX` where all are healthy.
     sick: usize,
-    fastest: f64,
-    min_j: f64,
+    /// Largest speed of the cells in each lane.
+    fastest: F8,
+    /// Smallest J of the cells in each lane.
+    min_j: F8,
 }
 
 impl Worst {
     /// That of no block.
-    pub const NONE: Self = Self { sick: usize::MAX, fastest: 0.0, min_j: f64::INFINITY };
+    pub const NONE: Self = Self { sick: usize::MAX, fastest: F8::ZERO, min_j: F8::splat(f64::INFINITY) };
 
-    /// That of a block with so many real cells.
-    fn of(found: &Found, block: usize, cells: usize) -> Self {
-        let real = ..cells;
-        let healthy = found.poison.0[real].iter().all(|x| *x == 0.0) && found.min_j.0[real].iter().all(|j| *j > 0.0);
-        Self {
-            sick: if healthy { usize::MAX } else { block },
-            fastest: found.speed.0[real].iter().fold(0.0, |a, b| a.max(*b)),
-            min_j: found.min_j.0[real].iter().fold(f64::INFINITY, |a, b| a.min(*b)),
+    /// With what was found in a block with so many real cells.
+    #[inline(always)]
+    fn see<L: Lanes>(&mut self, mut found: Found, block: usize, cells: usize) {
+        for lane in cells..LANES {
+            (found.speed.0[lane], found.min_j.0[lane], found.sick.0[lane]) = (0.0, f64::INFINITY, 0.0);
+        }
+        L::load(&self.fastest).max(L::load(&found.speed)).store(&mut self.fastest);
+        L::load(&self.min_j).min(L::load(&found.min_j)).store(&mut self.min_j);
+        let mut bits = 0;
+        for sick in &found.sick.0 {
+            bits |= sick.to_bits();
+        }
+        if bits != 0 {
+            self.sick = self.sick.min(block);
         }
     }
 
     /// That of both.
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            sick: self.sick.min(other.sick),
-            fastest: self.fastest.max(other.fastest),
-            min_j: self.min_j.min(other.min_j),
+    pub fn and(mut self, other: Self) -> Self {
+        self.sick = self.sick.min(other.sick);
+        for lane in 0..LANES {
+            self.fastest.0[lane] = self.fastest.0[lane].max(other.fastest.0[lane]);
+            self.min_j.0[lane] = self.min_j.0[lane].min(other.min_j.0[lane]);
         }
+        self
     }
 }
 
@@ -104,8 +113,9 @@ impl Scheme {
             with_scratch(&memory.scratch, |scratch| {
                 let u = &state.u[stride * block..stride * (block + 1)];
                 let internal = self.histories.of(&state.internal, block);
-                let work = Examine { scheme: self, block, u, history: History::Now(internal), scratch };
-                work.judge(speed)
+                let (mut worst, history) = (Worst::NONE, History::Now(internal));
+                self.kernel.run(Examine { scheme: self, block, u, history, scratch, speed, worst: &mut worst });
+                worst
             })
         });
         self.judge(worst.reduce(|| Worst::NONE, Worst::and), state, out)
@@ -122,7 +132,8 @@ impl Scheme {
     }
 
     fn judge(&self, worst: Worst, state: &State, out: &mut Survey) -> Result<(), Loss> {
-        (out.fastest, out.min_j) = (worst.fastest, worst.min_j);
+        out.fastest = worst.fastest.0.iter().fold(0.0, |a, b| a.max(*b));
+        out.min_j = worst.min_j.0.iter().fold(f64::INFINITY, |a, b| a.min(*b));
         if worst.sick == usize::MAX { Ok(()) } else { Err(self.find_loss(state, worst.sick)) }
     }
 
@@ -190,30 +201,25 @@ pub(super) struct Examine<'a> {
     pub history: History<'a>,
     /// The thread's arrays.
     pub scratch: &'a mut Scratch,
+    /// Its largest speed (out).
+    pub speed: &'a mut F8,
+    /// The worst of the blocks so far.
+    pub worst: &'a mut Worst,
 }
 
-impl Examine<'_> {
-    /// The worst of the block; its speeds into `speed`.
-    pub fn judge(self, speed: &mut F8) -> Worst {
-        let (scheme, block) = (self.scheme, self.block);
-        let found = scheme.kernel.run(self);
-        *speed = found.speed;
-        Worst::of(&found, block, scheme.operators.blocks.count[block])
-    }
-}
-
-pub(super) struct Found {
+/// What is found in a block.
+struct Found {
     speed: F8,
     min_j: F8,
-    /// 0, or NaN where a number or a speed is not finite.
-    poison: F8,
+    /// 0 in the lanes of healthy cells.
+    sick: F8,
 }
 
 impl Work for Examine<'_> {
-    type Out = Found;
+    type Out = ();
     #[inline(always)]
-    fn run<L: Lanes>(self) -> Found {
-        let Self { scheme, block, u, history, scratch } = self;
+    fn run<L: Lanes>(self) {
+        let Self { scheme, block, u, history, scratch, speed, worst } = self;
         let mut clock = scratch.phases.clock();
         let law = &scheme.laws[scheme.operators.blocks.material[block]];
         let others = &u[4 * scheme.operators.nodes()..];
@@ -228,8 +234,9 @@ impl Work for Examine<'_> {
             };
             examine::<L, _>(law, &points, internal, others)
         });
+        *speed = found.speed;
+        worst.see::<L>(found, block, scheme.operators.blocks.count[block]);
         scratch.phases.book(Phase::Survey, &mut clock);
-        found
     }
 }
 
@@ -267,11 +274,10 @@ fn at_points<'a, L: Lanes>(
         return Strided { f: u, count: n, point: 1, component: n };
     };
     let (f, between) = (&mut arrays.start, &mut arrays.between);
-    dense::interleave::<4>(u, n, &mut nodes.stage);
-    let nodes = &nodes.stage[..4 * n];
+    let (fields, nodes) = (&u[..4 * n], &mut nodes.stage);
     let count = match points.pool.share[block] {
-        Share::Shared(k) => to_points::<L, _>(&points.pool.shared[k], nodes, between, f),
-        Share::Own(k) => to_points::<L, _>(&points.pool.own[k], nodes, between, f),
+        Share::Shared(k) => to_points::<L, _>(&points.pool.shared[k], fields, nodes, between, f),
+        Share::Own(k) => to_points::<L, _>(&points.pool.own[k], fields, nodes, between, f),
     };
     Strided { f, count, point: 4, component: 1 }
 }
@@ -280,32 +286,60 @@ fn at_points<'a, L: Lanes>(
 #[inline(always)]
 fn to_points<L: Lanes, C: Coefficient>(
     matrices: &PointMatrices<C>,
-    nodes: &[F8],
+    fields: &[F8],
+    nodes: &mut [F8],
     between: &mut [F8],
     points: &mut [F8],
 ) -> usize {
-    ToPoints::<C, 4> { matrices, nodes, between, points }.run::<L>();
+    FieldsToPoints::<C, 4> { matrices, fields, nodes, between, points }.run::<L>();
     matrices.points()
+}
+
+/// Squares of the wave speeds and J of the points so far.
+struct Extremes<L> {
+    fastest: L,
+    slowest: L,
+    min_j: L,
+    /// 0, or NaN where a number is not finite.
+    poison: L,
+}
+
+impl<L: Lane> Extremes<L> {
+    #[inline(always)]
+    fn new() -> Self {
+        let most = L::splat(f64::INFINITY);
+        Self { fastest: L::zero(), slowest: most, min_j: most, poison: L::zero() }
+    }
+
+    /// With a point.
+    #[inline(always)]
+    fn see<M: Material>(&mut self, law: &M, f: [L; 4], internal: &[L]) {
+        let (squares, j) = (law.largest_squares(f, internal), tensor::det(f));
+        self.fastest = self.fastest.max(squares[0]);
+        self.slowest = self.slowest.min(squares[1]);
+        self.min_j = self.min_j.min(j);
+        // What is not finite in F is not finite in J.
+        self.poison = (squares[0] + squares[1] + j).mul_add(L::zero(), self.poison);
+    }
 }
 
 /// Looks at F at the points and at what else must be finite.
 #[inline(always)]
 fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8], others: &[F8]) -> Found {
-    let (mut fastest, mut slowest, mut min_j) = (L::zero(), L::splat(f64::INFINITY), L::splat(f64::INFINITY));
-    let mut poison = [L::zero(); 4];
     // A copy: its constants stay in registers.
     let law = *law;
-    for p in 0..points.count {
-        let (f, internal) = (points.at::<L>(p), recall::<L, M>(&law, internal, p));
-        let squares = law.largest_squares(f, &internal[..M::INTERNAL.len()]);
-        fastest = fastest.max(squares[0]);
-        slowest = slowest.min(squares[1]);
-        let j = tensor::det(f);
-        min_j = min_j.min(j);
-        // What is not finite in F is not finite in J.
-        poison[0] = (squares[0] + squares[1] + j).mul_add(L::zero(), poison[0]);
+    // Two points at a time, where none brings numbers of its own.
+    let pairs = if M::INTERNAL.is_empty() { points.count / 2 } else { 0 };
+    let (mut twins, mut seen) = (Extremes::<Twin<L>>::new(), Extremes::<L>::new());
+    for pair in 0..pairs {
+        twins.see(&law, lane::twins(points.at::<L>(2 * pair), points.at::<L>(2 * pair + 1)), &[]);
+    }
+    for p in 2 * pairs..points.count {
+        let internal = recall::<L, M>(&law, internal, p);
+        seen.see(&law, points.at::<L>(p), &internal[..M::INTERNAL.len()]);
     }
     // Four sums that do not wait for each other.
+    let mut poison = [twins.poison.0, twins.poison.1, seen.poison, L::zero()];
     let (fours, rest) = others.as_chunks::<4>();
     for u in fours {
         for k in 0..4 {
@@ -315,11 +349,14 @@ fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8], ot
     for u in rest {
         poison[0] = L::load(u).mul_add(L::zero(), poison[0]);
     }
-    // The root of a negative square is NaN, too.
-    let poison = (poison[0] + poison[1]) + (poison[2] + poison[3]) + L::zero() * slowest.sqrt();
-    let mut found = Found { speed: F8::ZERO, min_j: F8::ZERO, poison: F8::ZERO };
+    let fastest = twins.fastest.0.max(twins.fastest.1).max(seen.fastest);
+    let slowest = twins.slowest.0.min(twins.slowest.1).min(seen.slowest);
+    let min_j = twins.min_j.0.min(twins.min_j.1).min(seen.min_j);
+    let mut found = Found { speed: F8::ZERO, min_j: F8::ZERO, sick: F8::ZERO };
     fastest.sqrt().store(&mut found.speed);
     min_j.store(&mut found.min_j);
-    poison.store(&mut found.poison);
+    // The root of a negative square is NaN, too.
+    let poison = (poison[0] + poison[1]) + (poison[2] + poison[3]) + L::zero() * slowest.sqrt();
+    (poison + min_j.where_positive(L::zero(), L::splat(1.0))).store(&mut found.sick);
     found
 }

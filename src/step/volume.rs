@@ -207,10 +207,10 @@ pub struct Masses<'a, const M: usize> {
     pub masses: &'a mut [F8],
 }
 
-impl<const M: usize> Work for Masses<'_, M> {
-    type Out = ();
+impl<'a, const M: usize> Work for Masses<'a, M> {
+    type Out = &'a [F8];
     #[inline(always)]
-    fn run<L: Lanes>(self) {
+    fn run<L: Lanes>(self) -> &'a [F8] {
         let [one, two] = cofactors::<L, M>(self.line, &self.metric.load::<L>());
         let weights = row::<M>(&self.line.basis.weights);
         let masses = &mut self.masses[..M * M];
@@ -220,6 +220,7 @@ impl<const M: usize> Work for Masses<'_, M> {
                 (weight * determinant(one[i], two[j])).store(&mut masses[i * M + j]);
             }
         }
+        masses
     }
 }
 

@@ -9,7 +9,7 @@ pub mod transfer;
 
 use super::history::recall;
 use super::{Method, Sweeps};
-use crate::lane::{self, Coefficient, F8, Kernel, Lanes, load_array, store_array};
+use crate::lane::{self, Coefficient, F8, Kernel, Lane, Lanes, Twin, load_array, store_array};
 use crate::material::Material;
 use crate::operators::PointMatrices;
 use rates::Rates;
@@ -87,12 +87,13 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         let (np, times) = (self.matrices.points(), self.weights.len());
         // One metric for all points turns P to the axes of the cell before it is differentiated: fewer products.
         let constant = (self.metric.len() == 4).then(|| load_array::<L, 4>(self.metric));
+        let mut row = Row::default();
         for sweep in &self.sweeps.inner {
             for s in 0..sweep.to {
                 self.shift::<L>(arrays, &sweep.sources[s * times..(s + 1) * times]);
                 let Arrays { start, shifted, rates: [before, _], q, .. } = arrays;
                 let base = if shifted.is_empty() { &start[..6 * np] } else { &shifted[..6 * np] };
-                let row = self.row(&sweep.rates[s * sweep.from..(s + 1) * sweep.from]);
+                self.row(&sweep.rates[s * sweep.from..(s + 1) * sweep.from], &mut row);
                 match constant {
                     Some(metric) => self.sample::<L>(base, before, &row[..sweep.from], Turned(metric), q),
                     None => self.sample::<L>(base, before, &row[..sweep.from], Plain, q),
@@ -119,14 +120,20 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         self.kernel.run(ToPoints::<C, 6> { matrices: self.matrices, nodes: fitted, between, points: q });
     }
 
-    /// dt times the entries of a row.
+    /// dt times the entries of a row, into the first numbers of `out`. By loops of constant length: one of any length is
+    /// compiled to masked stores, which the processor is slow to read back.
     #[inline(always)]
-    fn row(&self, entries: &[f64]) -> Row {
-        let mut out = [0.0; 8];
-        for (out, entry) in out.iter_mut().zip(entries) {
-            *out = self.dt * entry;
+    fn row(&self, entries: &[f64], out: &mut Row) {
+        match entries.len() {
+            0 => {}
+            1 => scaled::<1>(self.dt, entries, out),
+            2 => scaled::<2>(self.dt, entries, out),
+            3 => scaled::<3>(self.dt, entries, out),
+            4 => scaled::<4>(self.dt, entries, out),
+            5 => scaled::<5>(self.dt, entries, out),
+            6 => scaled::<6>(self.dt, entries, out),
+            _ => scaled::<7>(self.dt, entries, out),
         }
-        out
     }
 
     /// U^n + dt rho0 sum_k B[k] b_k, where there are sources.
@@ -187,28 +194,59 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         let base = if shifted.is_empty() { &*start } else { &*shifted };
         let (start, base, before) = (start.as_chunks::<6>().0, base.as_chunks::<6>().0, before.as_chunks::<6>().0);
         let (start, base) = (&start[..np], &base[..np]);
-        let mean_row = self.row(&sweeps.mean_rates);
+        let (mut mean_row, mut rows) = (Row::default(), [Row::default(); 8]);
+        self.row(&sweeps.mean_rates, &mut mean_row);
+        for (s, row) in rows.iter_mut().enumerate().take(last.to) {
+            self.row(&last.rates[s * last.from..(s + 1) * last.from], row);
+        }
         for (p, mean) in mean.as_chunks_mut::<6>().0[..np].iter_mut().enumerate() {
             let u = state::<L, 0, 6>(base, before, &mean_row[..last.from], p);
             store_array([u[0], u[1], u[2], u[3], u[4] * inverse_density, u[5] * inverse_density], mean);
         }
-        let mut rows = [Row::default(); 8];
-        for (s, row) in rows.iter_mut().enumerate().take(last.to) {
-            *row = self.row(&last.rates[s * last.from..(s + 1) * last.from]);
-        }
-        for (p, mean_stress) in mean_stress.as_chunks_mut::<4>().0[..np].iter_mut().enumerate() {
-            let mut sum = [L::zero(); 4];
+        // Two points at a time as in `sample`. Sources do not act on F: from U^n itself.
+        let mean_stress = &mut mean_stress.as_chunks_mut::<4>().0[..np];
+        let (rows, twins) = (&rows[..last.to], if M::INTERNAL.is_empty() { np / 2 * 2 } else { 0 });
+        let (pairs, rest) = mean_stress.split_at_mut(twins);
+        for (pair, mean_stress) in pairs.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+            let p = 2 * pair;
+            let mut sum = [Twin::<L>::zero(); 4];
             for (row, weight) in rows.iter().zip(self.weights) {
-                // Sources do not act on F: from U^n itself.
+                let row = &row[..last.from];
+                let f =
+                    lane::twins(state::<L, 0, 4>(start, before, row, p), state::<L, 0, 4>(start, before, row, p + 1));
+                add(*weight, self.law.stress(f, &mut []), &mut sum);
+            }
+            let [one, two] = lane::apart(sum);
+            store_array(one, &mut mean_stress[0]);
+            store_array(two, &mut mean_stress[1]);
+        }
+        for (k, mean_stress) in rest.iter_mut().enumerate() {
+            let (p, mut sum) = (twins + k, [L::zero(); 4]);
+            for (row, weight) in rows.iter().zip(self.weights) {
                 let f = state::<L, 0, 4>(start, before, &row[..last.from], p);
                 let mut internal = recall::<L, M>(self.law, self.internal, p);
-                let (weight, stress) = (L::splat(*weight), self.law.stress(f, &mut internal[..M::INTERNAL.len()]));
-                for i in 0..4 {
-                    sum[i] = weight.mul_add(stress[i], sum[i]);
-                }
+                add(*weight, self.law.stress(f, &mut internal[..M::INTERNAL.len()]), &mut sum);
             }
             store_array(sum, mean_stress);
         }
+    }
+}
+
+/// The first K numbers of `out`: a factor times those of `entries`.
+#[inline(always)]
+fn scaled<const K: usize>(factor: f64, entries: &[f64], out: &mut Row) {
+    if let Some(entries) = entries.first_chunk::<K>() {
+        for k in 0..K {
+            out[k] = factor * entries[k];
+        }
+    }
+}
+
+/// sum += weight x.
+#[inline(always)]
+fn add<L: Lane>(weight: f64, x: [L; 4], sum: &mut [L; 4]) {
+    for (sum, x) in sum.iter_mut().zip(x) {
+        *sum = L::splat(weight).mul_add(x, *sum);
     }
 }
 
