@@ -7,8 +7,9 @@ use crate::error::Result;
 use crate::io::pending::write_text;
 use crate::lane::Kernel;
 use crate::scene::Method;
+use crate::scene::build::read_mesh;
 use crate::study::{machine, plot::save};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Sizes, in grid unknowns: near the caches, in memory, and what fills it.
 pub const SIZES: [usize; 3] = [60_000, 900_000, 10_000_000];
@@ -26,6 +27,10 @@ pub const SERIES: [(&str, Method, Option<&str>, Marker); 4] = [
     ("ader-dgmpm, lattice", Method::AderDgmpm, Some("midpoints"), Marker::Square),
     ("ader-dgmpm, any cloud", Method::AderDgmpm, Some("jitter"), Marker::Cross),
 ];
+
+/// The variants on the unstructured mesh and on squares beside it.
+pub const UNSTRUCTURED: &str = "unstructured";
+pub const AS_MANY: &str = "as many squares";
 
 /// Measurements that are alternated, so that a busy moment of the machine meets all of them.
 struct Batch {
@@ -56,7 +61,7 @@ impl Campaign<'_> {
     /// Files that cannot be written, a problem that cannot be built.
     pub fn run(&self) -> Result<()> {
         let mut rows = Vec::new();
-        for batch in self.batches() {
+        for batch in self.batches()? {
             self.measure(&batch, &mut rows)?;
             highest_peaks(&mut rows);
             self.write(&rows)?;
@@ -94,7 +99,8 @@ impl Campaign<'_> {
         }
     }
 
-    fn batches(&self) -> Vec<Batch> {
+    fn batches(&self) -> Result<Vec<Batch>> {
+        let squares = self.mesh.as_deref().map(as_many_squares).transpose()?;
         let all = |size, series: &[usize], degrees: std::ops::RangeInclusive<usize>| -> Vec<_> {
             let pairs = series.iter().flat_map(|&s| degrees.clone().map(move |d| (s, d)));
             pairs.map(|(s, d)| (s, "", self.setup(s, d, size))).collect()
@@ -114,11 +120,12 @@ impl Campaign<'_> {
             let free = Setup { sets: vec!["curl.control=off".to_owned()], ..base.clone() };
             let linear = Setup { law: "linear-elastic".to_owned(), ..base.clone() };
             variants.extend([(series, "no LCF", free), (series, "linear-elastic", linear)]);
-            if let Some(path) = &self.mesh {
-                variants.push((series, "unstructured", Setup { domain: Domain::File(path.clone()), ..base }));
+            if let Some((path, squares)) = self.mesh.as_ref().zip(squares) {
+                variants.push((series, AS_MANY, Setup { domain: Domain::Cells(squares), ..base.clone() }));
+                variants.push((series, UNSTRUCTURED, Setup { domain: Domain::File(path.clone()), ..base }));
             }
         }
-        out.push(batch(variants, SIZES[0], &[1], FEW));
+        out.push(batch(variants, SIZES[0], &[1], RUNS));
         // Alone in memory: each is built, measured on one and two threads in turn, and dropped.
         for setup in all(SIZES[1], &[0, 2, 3], 1..=4) {
             out.push(batch(vec![setup], SIZES[1], &[1, 2], RUNS));
@@ -129,7 +136,7 @@ impl Campaign<'_> {
         for setup in all(SIZES[2], &[0, 2], 1..=4) {
             out.push(Batch { length: Length::Steps(STEPS), ..batch(vec![setup], SIZES[2], &[1], 1) });
         }
-        out
+        Ok(out)
     }
 
     fn measure(&self, batch: &Batch, rows: &mut Vec<Row>) -> Result<()> {
@@ -158,6 +165,13 @@ impl Campaign<'_> {
         }
         Ok(())
     }
+}
+
+/// A rectangle of as many squares as a mesh has cells, as near to a square as can be.
+fn as_many_squares(mesh: &Path) -> Result<[usize; 2]> {
+    let cells = read_mesh(mesh)?.cells.len() as f64;
+    let side = cells.sqrt().round().max(1.0);
+    Ok([side as usize, (cells / side).round().max(1.0) as usize])
 }
 
 /// A peak is the most that was seen: all rows of a number of threads get the highest of their batches.

@@ -3,6 +3,7 @@
 pub mod blocks;
 pub mod carry;
 pub mod certificate;
+pub mod curl_core;
 pub mod curl_free;
 pub mod from_points;
 pub mod geometry;

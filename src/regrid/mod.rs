@@ -136,8 +136,7 @@ pub fn curl_free(operators: &Operators, components: usize, same: &[Option<usize>
     u.par_chunks_exact_mut(components * n).zip(same).enumerate().for_each(|(cell, (u, same))| {
         if same.is_none() {
             let (block, lane) = operators.blocks.slot[cell];
-            let masses: Vec<f64> = operators.geometry.masses(&operators.line, block, lane).collect();
-            curl_free.project(block, lane, |a| masses[a], &mut u[..4 * n]);
+            curl_free.project(&operators.line, &operators.geometry, [block, lane], &mut u[..4 * n]);
         }
     });
 }

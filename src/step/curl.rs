@@ -1,15 +1,16 @@
 //! Application of LCF, F <- F - theta C C^T W F, to one block.
 
+use super::curl_core::Cells;
 use super::volume::Masses;
-use crate::lane::{Coefficient, F8, Lane, Lanes, Work};
-use crate::operators::curl_free::Halves;
+use crate::lane::{F8, Lane, Lanes, Work};
+use crate::operators::curl_free::{Class, Halves};
 use crate::operators::{CurlFree, Matrix, Share};
 
 /// Memory of the projection.
 pub struct Arrays<'a> {
-    /// W F, [row i][direction][node]; or what of F goes into the products of [`Halves`].
+    /// W F, [row i][direction][node]; or what of F goes into the products of [`Halves`] and [`Cells`].
     pub weighted: &'a mut [F8],
-    /// C^T W F, [row i][column]; or what comes out of the products of [`Halves`].
+    /// C^T W F, [row i][column]; or what comes out of those products.
     pub coefficients: &'a mut [F8],
 }
 
@@ -58,11 +59,14 @@ pub fn project<L: Lanes, const M: usize>(
 ) {
     let pool = &curl_free.pool;
     match pool.share[block] {
-        Share::Shared(k) => match &curl_free.halves[k] {
-            Some(halves) => with_halves::<L, M>(halves, theta, arrays, u),
-            None => with_matrix::<L, _, M>(&pool.shared[k], theta, masses, arrays, u),
+        Share::Shared(k) => match &pool.shared[k] {
+            Class::Halves(halves) => with_halves::<L, M>(halves, theta, arrays, u),
+            Class::Whole(c) => with_matrix::<L, M>(c, theta, masses, arrays, u),
         },
-        Share::Own(k) => with_matrix::<L, _, M>(&pool.own[k], theta, masses, arrays, u),
+        Share::Own(k) => {
+            let Masses { line, metric, .. } = masses;
+            Cells { line, metric, curl: &curl_free.curl, core: &pool.own[k] }.project::<L, M>(theta, arrays, u);
+        }
     }
 }
 
@@ -183,8 +187,8 @@ fn product<L: Lanes, const K: usize>(matrix: &[f64], input: &[[F8; 2]], out: &mu
 }
 
 #[inline(always)]
-fn with_matrix<L: Lanes, C: Coefficient, const M: usize>(
-    matrix: &Matrix<C>,
+fn with_matrix<L: Lanes, const M: usize>(
+    matrix: &Matrix<f64>,
     theta: L,
     masses: Masses<'_, M>,
     arrays: Arrays,
@@ -201,9 +205,9 @@ fn with_matrix<L: Lanes, C: Coefficient, const M: usize>(
     let mut first = 0;
     while first < columns {
         first += match columns - first {
-            1 => coefficients_of::<L, C, 1>(matrix, first, theta, weighted, coefficients),
-            2 | 4 => coefficients_of::<L, C, 2>(matrix, first, theta, weighted, coefficients),
-            _ => coefficients_of::<L, C, 3>(matrix, first, theta, weighted, coefficients),
+            1 => coefficients_of::<L, 1>(matrix, first, theta, weighted, coefficients),
+            2 | 4 => coefficients_of::<L, 2>(matrix, first, theta, weighted, coefficients),
+            _ => coefficients_of::<L, 3>(matrix, first, theta, weighted, coefficients),
         };
     }
     let (one, two) = u[..2 * rows].split_at_mut(rows);
@@ -211,9 +215,9 @@ fn with_matrix<L: Lanes, C: Coefficient, const M: usize>(
     let mut r = 0;
     while r < rows {
         r += match rows - r {
-            1 => subtract::<L, C, 1>(matrix, r, coefficients, [&mut *one, &mut *two]),
-            2 | 4 => subtract::<L, C, 2>(matrix, r, coefficients, [&mut *one, &mut *two]),
-            _ => subtract::<L, C, 3>(matrix, r, coefficients, [&mut *one, &mut *two]),
+            1 => subtract::<L, 1>(matrix, r, coefficients, [&mut *one, &mut *two]),
+            2 | 4 => subtract::<L, 2>(matrix, r, coefficients, [&mut *one, &mut *two]),
+            _ => subtract::<L, 3>(matrix, r, coefficients, [&mut *one, &mut *two]),
         };
     }
 }
@@ -221,8 +225,8 @@ fn with_matrix<L: Lanes, C: Coefficient, const M: usize>(
 /// theta C^T W F of K columns from `first`; K. Columns (below, rows) are worked on together: the sums of both rows of F stay
 /// in registers and do not wait for each other.
 #[inline(always)]
-fn coefficients_of<L: Lanes, C: Coefficient, const K: usize>(
-    matrix: &Matrix<C>,
+fn coefficients_of<L: Lanes, const K: usize>(
+    matrix: &Matrix<f64>,
     first: usize,
     theta: L,
     weighted: &[F8],
@@ -235,7 +239,7 @@ fn coefficients_of<L: Lanes, C: Coefficient, const K: usize>(
     for r in 0..rows {
         let (one, two, row) = (L::load(&one[r]), L::load(&two[r]), &entries[..K]);
         for k in 0..K {
-            let entry = row[k].lanes::<L>();
+            let entry = L::splat(row[k]);
             sum[k][0] = entry.mul_add(one, sum[k][0]);
             sum[k][1] = entry.mul_add(two, sum[k][1]);
         }
@@ -250,15 +254,15 @@ fn coefficients_of<L: Lanes, C: Coefficient, const K: usize>(
 
 /// Subtracts K rows of C times the coefficients from both rows of F; K.
 #[inline(always)]
-fn subtract<L: Lanes, C: Coefficient, const K: usize>(
-    matrix: &Matrix<C>,
+fn subtract<L: Lanes, const K: usize>(
+    matrix: &Matrix<f64>,
     first: usize,
     coefficients: &[F8],
     u: [&mut [F8]; 2],
 ) -> usize {
     let columns = matrix.columns;
     let (one, two) = (&coefficients[..columns], &coefficients[columns..2 * columns]);
-    let mut rows = [&[] as &[C]; K];
+    let mut rows = [&[] as &[f64]; K];
     for (k, row) in rows.iter_mut().enumerate() {
         *row = &matrix.data[(first + k) * columns..][..columns];
     }
@@ -266,7 +270,7 @@ fn subtract<L: Lanes, C: Coefficient, const K: usize>(
     for column in 0..columns {
         let (one, two) = (L::load(&one[column]), L::load(&two[column]));
         for k in 0..K {
-            let entry = rows[k][column].lanes::<L>();
+            let entry = L::splat(rows[k][column]);
             sum[k][0] = entry.mul_add(one, sum[k][0]);
             sum[k][1] = entry.mul_add(two, sum[k][1]);
         }
@@ -320,7 +324,8 @@ mod tests {
                 let needs = Needs { degree, sampling: None, curl_free: true };
                 let operators = Operators::build(&mesh, &links(&mesh).unwrap(), &[0; 8], &needs).unwrap();
                 let (curl_free, n) = (operators.curl_free.as_ref().unwrap(), operators.nodes());
-                assert_eq!(curl_free.halves.iter().any(Option::is_some), by_halves);
+                let halves = |class: &Class| matches!(class, Class::Halves(_));
+                assert_eq!(curl_free.pool.shared.iter().any(halves), by_halves);
                 let u: Vec<F8> =
                     (0..4 * n).map(|k| F8(std::array::from_fn(|l| ((7 * k + 3 * l) as f64).sin()))).collect();
                 for kernel in Kernel::NAMES.iter().map(|(_, kernel)| *kernel) {
@@ -328,8 +333,7 @@ mod tests {
                     with_nodes!(operators.line.m, M => kernel.run(Project::<'_, M>(&operators, &mut out)));
                     for lane in 0..8 {
                         let mut f: Vec<f64> = u.iter().map(|u| u.0[lane]).collect();
-                        let masses: Vec<f64> = operators.geometry.masses(&operators.line, 0, lane).collect();
-                        curl_free.project(0, lane, |a| masses[a], &mut f);
+                        curl_free.project(&operators.line, &operators.geometry, [0, lane], &mut f);
                         for (f, out) in f.iter().zip(&out) {
                             // Sums of up to 98 numbers of order one.
                             assert!((f - out.0[lane]).abs() < 1e-13, "S{degree} {kernel:?}: {f} {out:?}");

@@ -8,6 +8,7 @@ mod balance;
 mod begin;
 pub mod cfl;
 mod curl;
+mod curl_core;
 mod dense;
 mod energy;
 mod finish;

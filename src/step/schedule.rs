@@ -132,6 +132,11 @@ impl Pass<'_> {
         let stride = state.components * scheme.operators.nodes();
         let rates = &mut tile.rates[event.rates as usize * stages.len() * stride..][..stages.len() * stride];
         let (before, now) = rates.split_at_mut(stage.number * stride);
+        if stage.number + 1 == stages.len()
+            && let Some(curl_free) = &scheme.operators.curl_free
+        {
+            curl_free.ask_for(block + 1);
+        }
         // Blocks around the tile have no last stage.
         if tile.far && stage.number + 1 == stages.len() {
             out.ask_for(block - tile.plan.range.start + AHEAD, stride);

@@ -84,7 +84,7 @@ impl Arrays {
 
 /// The first M rows of M numbers. (Arrays of constant size: a loop over slices becomes a call of `memcpy`.)
 #[inline(always)]
-fn square<const M: usize>(numbers: &[f64]) -> [[f64; M]; M] {
+pub fn square<const M: usize>(numbers: &[f64]) -> [[f64; M]; M] {
     let mut out = [[0.0; M]; M];
     if let Some(rows) = numbers.as_chunks::<M>().0.first_chunk::<M>() {
         out = *rows;
