@@ -118,21 +118,21 @@ pub trait Lanes: Lane {
     fn store(self, to: &mut F8);
     /// From one number for each lane.
     fn from_lanes(numbers: [f64; LANES]) -> Self;
-    /// K numbers of cells in rows that begin in other lanes: lane l of number k is lane l + r of `all[first + k]` for
-    /// l < 8 - r, then lane l + r - 8 of `all[second + k]`; r in 1..8.
+    /// K numbers of cells in rows that begin in other lanes: lane l of number k is lane l + r of `first[at + k]` for
+    /// l < 8 - r, then lane l + r - 8 of `second[at + k]`; r in 1..8.
     ///
     /// # Panics
-    /// Where one of the two runs begins before the second number of `all`, or does not end before its last one. (Both may be
-    /// read a little beyond what is wanted.)
+    /// Where `at` is the first number of the runs, or the numbers do not end before the last one of both. (Both may be read a
+    /// little beyond what is wanted.)
     #[inline(always)]
-    fn load_joined<const K: usize>(all: &[F8], first: usize, second: usize, r: usize) -> [Self; K] {
-        assert_within::<K>(all, first, second, r);
+    fn load_joined<const K: usize>(first: &[F8], second: &[F8], at: usize, r: usize) -> [Self; K] {
+        assert_within::<K>(first, second, at, r);
         let mut out = [Self::zero(); K];
         for (k, out) in out.iter_mut().enumerate() {
             let mut lanes = [0.0; LANES];
             for (lane, number) in lanes.iter_mut().enumerate() {
-                let at = lane + r;
-                *number = if at < LANES { all[first + k].0[at] } else { all[second + k].0[at - LANES] };
+                let l = lane + r;
+                *number = if l < LANES { first[at + k].0[l] } else { second[at + k].0[l - LANES] };
             }
             *out = Self::from_lanes(lanes);
         }
@@ -142,8 +142,8 @@ pub trait Lanes: Lane {
 
 /// What [`Lanes::load_joined`] asks for.
 #[inline(always)]
-fn assert_within<const K: usize>(all: &[F8], first: usize, second: usize, r: usize) {
-    let within = |start: usize| start >= 1 && start < all.len() && K < all.len() - start;
+fn assert_within<const K: usize>(first: &[F8], second: &[F8], at: usize, r: usize) {
+    let within = |run: &[F8]| at >= 1 && at < run.len() && K < run.len() - at;
     assert!(within(first) && within(second) && (1..LANES).contains(&r), "runs to join lie beyond the numbers");
 }
 
@@ -158,21 +158,21 @@ pub fn load_array<L: Lanes, const K: usize>(from: &[F8]) -> [L; K] {
 }
 
 /// Runs of K numbers, for each lane from places of its own: number k of run i of lane l is number
-/// `first[l] + i step[l] + LANES k` of [`as_f64`].
+/// `first[l] + i step[l] + LANES k` of [`as_f64`] of `from[l]`.
 ///
 /// # Panics
 /// Where a lane would read beyond the end.
 #[inline(always)]
 pub fn gather_run<L: Lanes, const K: usize>(
-    from: &[F8],
+    from: &[&[F8]; LANES],
     first: &[usize; LANES],
     step: &[isize; LANES],
     out: &mut [[F8; K]],
 ) {
-    let numbers = as_f64(from);
     let (reach, more) = ((K - 1) * LANES, out.len().saturating_sub(1) as isize);
-    let mut at = [numbers.as_ptr(); LANES];
+    let mut at = [std::ptr::null(); LANES];
     for lane in 0..LANES {
+        let numbers = as_f64(from[lane]);
         let last = first[lane].wrapping_add_signed(more * step[lane]);
         assert!(first[lane].max(last) < numbers.len().saturating_sub(reach), "a lane beyond the end");
         at[lane] = numbers.as_ptr().wrapping_add(first[lane]);
@@ -407,7 +407,7 @@ mod tests {
         #[inline(always)]
         fn run<L: Lanes>(self) -> [F8; 3] {
             let mut out = [F8::ZERO; 3];
-            store_array(L::load_joined::<3>(self.0, 5, 1, self.1), &mut out);
+            store_array(L::load_joined::<3>(&self.0[4..], self.0, 1, self.1), &mut out);
             out
         }
     }

@@ -1,6 +1,7 @@
 //! Fluxes (3) of the four faces of a block, lifted: len (Flux* - own flux of the F rows).
 
 use super::balance::{FacePower, Sums};
+use super::tiles::{STORES, Slot};
 use super::volume::{Arrays, width};
 use super::{Scheme, Stage};
 use crate::boundary::FacePoint;
@@ -56,23 +57,25 @@ fn turned<L: Lanes, const W: usize>(mut x: [L; W]) -> [L; W] {
 /// All traces under way.
 #[derive(Clone, Copy)]
 pub(super) struct Traces<'a> {
-    /// One number, then [slot][face][point][width], then one more.
-    pub all: &'a [F8],
+    /// By store: one number, then [slot][face][point][width], then one more.
+    pub all: &'a [Vec<F8>; STORES],
     /// The slot of each block.
-    pub slots: &'a [u32],
+    pub slots: &'a [Slot],
 }
 
 impl<'a> Traces<'a> {
-    /// Where those of a face begin, numbered 4 block + local face, with `length` numbers each.
+    /// Those of `count` faces from one on, numbered 4 block + local face, with `length` numbers each; with the numbers before
+    /// and behind them.
     #[inline(always)]
-    fn face(&self, face: usize, length: usize) -> usize {
-        1 + (4 * self.slots[face / 4] as usize + face % 4) * length
+    fn around(&self, face: usize, count: usize, length: usize) -> &'a [F8] {
+        let slot = self.slots[face / 4];
+        &self.all[slot.store()][(4 * slot.index() + face % 4) * length..][..count * length + 2]
     }
 
     /// Those of `count` faces.
     #[inline(always)]
     fn faces(&self, face: usize, count: usize, length: usize) -> &'a [F8] {
-        &self.all[self.face(face, length)..][..count * length]
+        &self.around(face, count, length)[1..][..count * length]
     }
 }
 
@@ -81,8 +84,8 @@ impl<'a> Traces<'a> {
 enum Beyond<'a> {
     /// [point][width], each lane's in the same lane.
     Aligned(&'a [F8]),
-    /// In two runs of all traces, see [`Lanes::load_joined`].
-    Joined { all: &'a [F8], first: usize, second: usize, by: usize },
+    /// In two runs that begin with their second number, see [`Lanes::load_joined`].
+    Joined { first: &'a [F8], second: &'a [F8], by: usize },
 }
 
 impl Beyond<'_> {
@@ -91,7 +94,7 @@ impl Beyond<'_> {
     fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
         match *self {
             Beyond::Aligned(traces) => load_array(&traces[point * W..][..W]),
-            Beyond::Joined { all, first, second, by } => L::load_joined(all, first + point * W, second + point * W, by),
+            Beyond::Joined { first, second, by } => L::load_joined(first, second, 1 + point * W, by),
         }
     }
 
@@ -99,14 +102,9 @@ impl Beyond<'_> {
     fn number(&self, k: usize, lane: usize) -> f64 {
         match *self {
             Beyond::Aligned(traces) => traces[k].0[lane],
-            Beyond::Joined { all, first, .. } if lane + self.by() < LANES => all[first + k].0[lane + self.by()],
-            Beyond::Joined { all, second, .. } => all[second + k].0[lane + self.by() - LANES],
+            Beyond::Joined { first, by, .. } if lane + by < LANES => first[1 + k].0[lane + by],
+            Beyond::Joined { second, by, .. } => second[1 + k].0[lane + by - LANES],
         }
-    }
-
-    /// By how many lanes it is moved.
-    fn by(&self) -> usize {
-        if let Beyond::Joined { by, .. } = self { *by } else { 0 }
     }
 }
 
@@ -138,14 +136,15 @@ impl Gather<'_> {
     fn with<L: Lanes, const W: usize>(self) {
         let out = self.out.as_chunks_mut::<W>().0;
         let (m, stride) = (out.len(), (W * LANES) as isize);
-        let (mut first, mut step) = ([0; LANES], [stride; LANES]);
+        let (mut from, mut first, mut step) = ([&[][..]; LANES], [0; LANES], [stride; LANES]);
         for lane in 0..LANES {
             let there = &self.from[lane];
             let point = if there.flip { m - 1 } else { 0 };
-            first[lane] = (self.traces.face(there.face, m * W) + point * W) * LANES + there.lane;
+            from[lane] = self.traces.faces(there.face, 1, m * W);
+            first[lane] = point * W * LANES + there.lane;
             step[lane] = if there.flip { -stride } else { stride };
         }
-        gather_run::<L, W>(self.traces.all, &first, &step, out);
+        gather_run::<L, W>(&from, &first, &step, out);
     }
 }
 
@@ -279,8 +278,8 @@ pub(super) fn lift(place: Place, traces: Traces, nodes: &mut Arrays, mut sums: O
         other[face] = match plan[face].side {
             Side::Aligned(there) => Beyond::Aligned(traces.faces(there, 1, length)),
             Side::Joined { first, second, by } => {
-                let [first, second] = [first, second].map(|there| traces.face(there, length));
-                Beyond::Joined { all: traces.all, first, second, by }
+                let [first, second] = [first, second].map(|there| traces.around(there, 1, length));
+                Beyond::Joined { first, second, by }
             }
             Side::Gathered(entry) => {
                 let (out, rest) = room.split_at_mut(length);

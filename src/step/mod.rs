@@ -13,6 +13,7 @@ mod energy;
 mod finish;
 mod flux;
 pub mod history;
+mod out;
 pub mod phase;
 mod predictor;
 mod runge_kutta;
@@ -85,7 +86,7 @@ pub struct Work {
     /// Its wave speeds, see [`Survey`].
     speed: Vec<F8>,
     /// Rates and traces under way.
-    tiles: schedule::Tiles,
+    passes: schedule::Passes,
     /// The balance of the step, by block; none where nobody asks for it.
     balance: Option<Vec<balance::Sums>>,
     /// One a thread.
@@ -119,7 +120,7 @@ impl Work {
         Self {
             next: state.clone(),
             speed: vec![F8::ZERO; operators.blocks.len()],
-            tiles: schedule::Tiles::new(scheme, state.components * operators.nodes()),
+            passes: schedule::Passes::new(scheme, state.components * operators.nodes()),
             balance: None,
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
             rate: phase::Rate::start(),
@@ -138,7 +139,7 @@ impl Work {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let numbers = self.next.u.len() + self.next.internal.len() + self.speed.len() + self.tiles.numbers();
+        let numbers = self.next.u.len() + self.next.internal.len() + self.speed.len() + self.passes.numbers();
         numbers * size_of::<F8>() + self.balance.as_ref().map_or(0, |sums| size_of_val(&sums[..]))
     }
 }

@@ -1,65 +1,84 @@
-//! The stages of a step on all blocks, by the plans of [`tiles`].
+//! The stages of a step on all blocks, by the plan of [`tiles`].
 
-use super::balance::Sums;
+use super::out::Out;
 use super::survey::Worst;
-use super::tiles::{self, Event, Plan};
+use super::tiles::{self, Event, Piece, STORES, Slot, TILES};
 use super::{Scheme, Scratch, Stage, Survey, Work, begin, finish, flux, volume, with_scratch};
 use crate::lane::{self, F8};
 use crate::operators::Operators;
 use crate::state::State;
+use std::mem::swap;
+use std::ops::Range;
 use std::sync::Mutex;
 
-/// A tile of blocks with its memory.
-pub(super) struct Tile {
-    plan: Plan,
-    /// dU/dt: [slot][stage][component][node].
-    rates: Vec<F8>,
-    /// See [`flux::Traces`], with [`volume::width`] numbers a point.
-    traces: Vec<F8>,
-    /// The slot of the traces of each block: [stage][block].
-    slots: Vec<u32>,
-    /// The worst of its blocks after the last step.
+/// A pass with its memory.
+pub(super) struct Pass {
+    plan: tiles::Pass,
+    /// By store, dU/dt: [slot][stage][component][node].
+    rates: [Vec<F8>; STORES],
+    /// By store, see [`flux::Traces`], with [`volume::width`] numbers a point.
+    traces: [Vec<F8>; STORES],
+    /// The worst of the blocks of which it made the new state in the last step.
     worst: Worst,
+}
+
+impl Pass {
+    /// With so many numbers of the rates and of the traces of a block.
+    fn new(plan: tiles::Pass, rates: usize, traces: usize) -> Self {
+        Self {
+            rates: plan.rates.map(|slots| vec![F8::ZERO; slots * rates]),
+            traces: plan.traces.map(|slots| vec![F8::ZERO; slots * traces + 2]),
+            worst: Worst::NONE,
+            plan,
+        }
+    }
+}
+
+/// All passes of a step.
+pub(super) struct Passes {
+    /// One after the other to the blocks' end.
+    tiles: Vec<Pass>,
+    ranges: Vec<Range<usize>>,
+    seams: Vec<Pass>,
+    pieces: Vec<Piece>,
+    /// The slot of the traces of each block: [stage][block].
+    slots: Vec<Slot>,
     /// Whether the unknowns come from memory, see [`FAR`].
     far: bool,
 }
 
-/// The tiles of a step.
-pub(super) struct Tiles(Vec<Tile>);
-
-impl Tiles {
+impl Passes {
     /// For states with `stride` numbers a block, on the current number of threads.
     pub fn new(scheme: &Scheme, stride: usize) -> Self {
         let (stages, blocks) = (scheme.stages(), &scheme.operators.blocks);
-        let graph = tiles::graph(blocks);
-        let plans = tiles::plans(&graph, stages, rayon::current_num_threads().max(1));
+        let threads = rayon::current_num_threads().max(1);
+        let tiles::Plan { tiles, seams, ranges, pieces, slots } =
+            tiles::Plan::new(&tiles::graph(blocks), stages, threads);
         let numbers = scheme.block_traces(false);
-        let tile = |plan: Plan| Tile {
-            rates: vec![F8::ZERO; plan.rates * stages * stride],
-            traces: vec![F8::ZERO; plan.traces * numbers + 2],
-            slots: vec![0; stages * blocks.len()],
-            worst: Worst::NONE,
-            far: blocks.len() * stride * size_of::<F8>() > FAR,
-            plan,
-        };
-        Self(plans.into_iter().map(tile).collect())
+        let with_memory =
+            |plans: Vec<tiles::Pass>| plans.into_iter().map(|plan| Pass::new(plan, stages * stride, numbers)).collect();
+        let far = blocks.len() * stride * size_of::<F8>() > FAR;
+        Self { tiles: with_memory(tiles), seams: with_memory(seams), ranges, pieces, slots, far }
     }
 
     /// Makes room for the numbers that the balance of energy needs.
     pub fn widen(&mut self, scheme: &Scheme) {
-        for tile in &mut self.0 {
-            tile.traces.resize(tile.plan.traces * scheme.block_traces(true) + 2, F8::ZERO);
+        for pass in self.tiles.iter_mut().chain(&mut self.seams) {
+            for (traces, slots) in pass.traces.iter_mut().zip(pass.plan.traces) {
+                traces.resize(slots * scheme.block_traces(true) + 2, F8::ZERO);
+            }
         }
     }
 
     /// The worst of all blocks after the last step.
     pub fn worst(&self) -> Worst {
-        self.0.iter().fold(Worst::NONE, |worst, tile| worst.and(tile.worst))
+        self.tiles.iter().chain(&self.seams).fold(Worst::NONE, |worst, pass| worst.and(pass.worst))
     }
 
     /// Numbers of eight lanes held.
     pub fn numbers(&self) -> usize {
-        self.0.iter().map(|tile| tile.rates.len() + tile.traces.len()).sum()
+        let of = |pass: &Pass| pass.rates.iter().chain(&pass.traces).map(Vec::len).sum::<usize>();
+        self.tiles.iter().chain(&self.seams).map(of).sum()
     }
 }
 
@@ -70,47 +89,44 @@ const FAR: usize = 4 << 20;
 /// So many blocks ahead memory is asked for.
 const AHEAD: usize = 2;
 
-/// A tile under way.
-struct Pass<'a> {
-    scheme: &'a Scheme,
-    stages: &'a [Stage<'a>],
-    state: &'a State,
-    survey: &'a Survey,
-    tile: &'a mut Tile,
-    /// What the step makes of the tile.
-    out: Out<'a>,
-    /// That of the blocks around it, which is another's.
-    others: Sums,
+/// What a pass makes, see [`Out`]: of a tile all in one, of a seam by the store of its pieces.
+type Outs<'a> = [Out<'a>; STORES];
+
+/// A pass under way.
+struct Run<'a> {
+    step: Step<'a>,
+    pass: &'a mut Pass,
+    outs: Outs<'a>,
+    /// Which of them is meant by the number of a store: of a tile always the first.
+    mask: usize,
     scratch: &'a mut Scratch,
 }
 
-impl Pass<'_> {
+impl Run<'_> {
     fn run(mut self) {
-        self.tile.worst = Worst::NONE;
-        for number in 0..self.tile.plan.events.len() {
-            let event = self.tile.plan.events[number];
-            match event.traces {
-                Some(slot) => self.begin(&event, slot as usize),
-                None => self.finish(&event),
-            }
+        self.pass.worst = Worst::NONE;
+        for number in 0..self.pass.plan.events.len() {
+            let event = self.pass.plan.events[number];
+            if event.begins { self.begin(&event) } else { self.finish(&event) }
         }
     }
 
-    fn begin(&mut self, event: &Event, slot: usize) {
-        let Self { scheme, stages, state, survey, tile, .. } = self;
+    fn begin(&mut self, event: &Event) {
+        let Self { step, pass, outs, mask, scratch } = self;
+        let Step { scheme, stages, state, survey, slots, far, .. } = *step;
         let (block, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
         let blocks = scheme.operators.blocks.len();
         if stage.number == 0 && block + AHEAD < blocks {
             scheme.ask_for(state, block + AHEAD);
-            if tile.far {
+            if far {
                 scheme.ask_for_more(survey, block + AHEAD);
             }
         }
-        tile.slots[stage.number * blocks + block] = slot as u32;
         let stride = state.components * scheme.operators.nodes();
-        let rates = &mut tile.rates[event.rates as usize * stages.len() * stride..][..stages.len() * stride];
+        let rates = rates_of(&mut pass.rates, event.rates, stages.len() * stride);
         let (before, now) = rates.split_at_mut(stage.number * stride);
-        let numbers = scheme.block_traces(self.out.balance.is_some());
+        let out = &mut outs[event.rates.store() & *mask];
+        let (slot, numbers) = (slots[stage.number * blocks + block], scheme.block_traces(out.balance.is_some()));
         let work = begin::Block {
             scheme,
             stage,
@@ -118,33 +134,34 @@ impl Pass<'_> {
             state,
             before,
             rate: &mut now[..stride],
-            traces: &mut tile.traces[1 + slot * numbers..][..numbers],
-            sums: sums_of(&mut self.out.balance, &tile.plan, &mut self.others, block),
-            scratch: self.scratch,
+            traces: &mut pass.traces[slot.store()][1 + slot.index() * numbers..][..numbers],
+            sums: out.sums(block),
+            scratch,
         };
         work.run();
     }
 
     fn finish(&mut self, event: &Event) {
-        let Self { scheme, stages, state, survey, tile, out, .. } = self;
+        let Self { step, pass, outs, mask, scratch } = self;
+        let Step { scheme, stages, state, survey, slots, far, .. } = *step;
         let (block, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
         let blocks = scheme.operators.blocks.len();
         let stride = state.components * scheme.operators.nodes();
-        let rates = &mut tile.rates[event.rates as usize * stages.len() * stride..][..stages.len() * stride];
+        let rates = rates_of(&mut pass.rates, event.rates, stages.len() * stride);
         let (before, now) = rates.split_at_mut(stage.number * stride);
-        // Blocks around the tile have no last stage.
-        if tile.far && stage.number + 1 == stages.len() {
-            out.ask_for(block - tile.plan.range.start + AHEAD, stride);
+        let out = &mut outs[event.rates.store() & *mask];
+        let is_last = stage.number + 1 == stages.len();
+        if far && is_last {
+            out.ask_for(block + AHEAD, stride);
         }
-        let new = (stage.number + 1 == stages.len()).then(|| {
-            let at = block - tile.plan.range.start;
-            let history = scheme.histories.range(block);
-            let start = scheme.histories.range(tile.plan.range.start).start;
+        let at = block - out.first;
+        let new = is_last.then(|| {
+            let (history, start) = (scheme.histories.range(block), scheme.histories.before(out.first));
             finish::New {
                 u: &mut out.u[at * stride..][..stride],
                 internal: &mut out.internal[history.start - start..history.end - start],
                 speed: &mut out.speed[at],
-                worst: &mut tile.worst,
+                worst: &mut pass.worst,
             }
         });
         let work = finish::Block {
@@ -155,56 +172,19 @@ impl Pass<'_> {
             survey,
             before,
             rate: &mut now[..stride],
-            traces: flux::Traces { all: &tile.traces, slots: &tile.slots[stage.number * blocks..][..blocks] },
+            traces: flux::Traces { all: &pass.traces, slots: &slots[stage.number * blocks..][..blocks] },
             new,
-            sums: sums_of(&mut out.balance, &tile.plan, &mut self.others, block),
-            scratch: self.scratch,
+            sums: out.balance.as_mut().and_then(|sums| sums.get_mut(at)),
+            scratch,
         };
         work.run();
     }
 }
 
-/// Where a block's balance is kept; none where it is off.
-fn sums_of<'a>(
-    balance: &'a mut Option<&mut [Sums]>,
-    plan: &Plan,
-    others: &'a mut Sums,
-    block: usize,
-) -> Option<&'a mut Sums> {
-    let own = balance.as_mut()?;
-    if plan.range.contains(&block) { own.get_mut(block - plan.range.start) } else { Some(others) }
-}
-
-/// What a step makes of the blocks of some tiles that follow each other.
-struct Out<'a> {
-    /// New unknowns.
-    u: &'a mut [F8],
-    /// New internal variables.
-    internal: &'a mut [F8],
-    /// New wave speeds.
-    speed: &'a mut [F8],
-    /// The balance of the blocks; none where it is off.
-    balance: Option<&'a mut [Sums]>,
-}
-
-impl<'a> Out<'a> {
-    /// Asks for what will be written of a block. (A store to a line that is not there waits as a load does.)
-    #[inline]
-    fn ask_for(&self, block: usize, stride: usize) {
-        if let Some(u) = self.u.get(stride * block..stride * (block + 1)) {
-            lane::prefetch(u);
-            lane::prefetch(&self.speed[block..=block]);
-        }
-    }
-
-    /// Those of the first `blocks`, with so many internal variables, and the rest.
-    fn split(self, blocks: usize, stride: usize, internal: usize) -> (Self, Self) {
-        let (u, u2) = self.u.split_at_mut(blocks * stride);
-        let (internal, internal2) = self.internal.split_at_mut(internal);
-        let (speed, speed2) = self.speed.split_at_mut(blocks);
-        let (balance, balance2) = self.balance.map(|sums| sums.split_at_mut(blocks)).unzip();
-        (Out { u, internal, speed, balance }, Out { u: u2, internal: internal2, speed: speed2, balance: balance2 })
-    }
+/// The rates of a block, of which each has so many numbers.
+#[inline]
+fn rates_of(stores: &mut [Vec<F8>; STORES], slot: Slot, numbers: usize) -> &mut [F8] {
+    &mut stores[slot.store()][slot.index() * numbers..][..numbers]
 }
 
 /// A step under way.
@@ -214,36 +194,77 @@ struct Step<'a> {
     stages: &'a [Stage<'a>],
     state: &'a State,
     survey: &'a Survey,
+    slots: &'a [Slot],
+    far: bool,
     scratch: &'a [Mutex<Scratch>],
 }
 
 impl Step<'_> {
-    /// Halves until a tile is left: nothing may be allocated.
-    fn run(self, tiles: &mut [Tile], out: Out) {
-        let Self { scheme, stages, state, survey, scratch } = self;
+    fn pass(self, pass: &mut Pass, outs: Outs, mask: usize) {
+        with_scratch(self.scratch, |scratch| Run { step: self, pass, outs, mask, scratch }.run());
+    }
+
+    /// The first phase. Halves until a tile is left: nothing may be allocated.
+    fn tiles(self, tiles: &mut [Pass], ranges: &[Range<usize>], out: Out) {
         match tiles {
             [] => {}
-            [tile] => with_scratch(scratch, |scratch| {
-                Pass { scheme, stages, state, survey, tile, out, others: Sums::default(), scratch }.run();
-            }),
+            [tile] => self.pass(tile, [out, Out::default(), Out::default(), Out::default()], 0),
             _ => {
-                let (left, right) = tiles.split_at_mut(tiles.len() / 2);
-                let (start, middle) = (left[0].plan.range.start, right[0].plan.range.start);
-                let first = |block| scheme.histories.range(block).start;
-                let stride = state.components * scheme.operators.nodes();
-                let (one, two) = out.split(middle - start, stride, first(middle) - first(start));
-                rayon::join(|| self.run(left, one), || self.run(right, two));
+                let half = tiles.len() / 2;
+                let (left, right) = tiles.split_at_mut(half);
+                let (one, two) = out.split(ranges[half].start, &self.scheme.histories);
+                rayon::join(|| self.tiles(left, &ranges[..half], one), || self.tiles(right, &ranges[half..], two));
             }
         }
     }
+
+    /// The second phase, with what each seam makes.
+    fn seams(self, seams: &mut [Pass], outs: &mut [Outs]) {
+        match (seams, outs) {
+            ([seam], [outs, ..]) => self.pass(seam, std::mem::take(outs), STORES - 1),
+            (seams, outs) if seams.len() > 1 => {
+                let half = seams.len() / 2;
+                let ((left, right), (one, two)) = (seams.split_at_mut(half), outs.split_at_mut(half));
+                rayon::join(|| self.seams(left, one), || self.seams(right, two));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Hands what is under way of the pieces from tiles to seams, or back.
+fn hand_over(pieces: &[Piece], tiles: &mut [Pass], seams: &mut [Pass]) {
+    for &Piece { tile, seam, store, .. } in pieces {
+        let (tile, seam) = (&mut tiles[tile], &mut seams[seam]);
+        swap(&mut tile.rates[store], &mut seam.rates[store]);
+        swap(&mut tile.traces[store], &mut seam.traces[store]);
+    }
+}
+
+/// Hands out what each of the seams makes.
+fn hand_out<'a>(pieces: &[Piece], mut rest: Out<'a>, scheme: &Scheme) -> [Outs<'a>; TILES] {
+    let mut outs: [Outs; TILES] = std::array::from_fn(|_| Outs::default());
+    for Piece { seam, store, range, .. } in pieces {
+        let (_, from) = rest.split(range.start, &scheme.histories);
+        (outs[*seam][*store], rest) = from.split(range.end, &scheme.histories);
+    }
+    outs
 }
 
 impl Scheme {
     /// All stages of a step.
     pub(super) fn run_stages(&self, stages: &[Stage], state: &State, survey: &Survey, work: &mut Work) {
-        let Work { tiles: Tiles(tiles), next, speed, balance, scratch, .. } = work;
-        let out = Out { u: &mut next.u, internal: &mut next.internal, speed, balance: balance.as_deref_mut() };
-        Step { scheme: self, stages, state, survey, scratch }.run(tiles, out);
+        let Work { passes, next, speed, balance, scratch, .. } = work;
+        let Passes { tiles, ranges, seams, pieces, slots, far } = passes;
+        let (u, internal) = (&mut next.u[..], &mut next.internal[..]);
+        let mut out = Out { first: 0, u, internal, speed, balance: balance.as_deref_mut() };
+        let step = Step { scheme: self, stages, state, survey, slots, far: *far, scratch };
+        step.tiles(tiles, ranges, out.again());
+        if !seams.is_empty() {
+            hand_over(pieces, tiles, seams);
+            step.seams(seams, &mut hand_out(pieces, out, self));
+            hand_over(pieces, tiles, seams);
+        }
     }
 
     /// Asks for what the stages of a block will read.
