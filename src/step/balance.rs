@@ -174,7 +174,7 @@ pub(super) fn strain_energy<L: Lanes, M: Material>(law: &M, mass: &[F8], u: &[F8
 impl Work {
     /// With the memory that the balance of energy needs; the steps then meter it.
     pub fn with_balance(mut self, scheme: &Scheme) -> Self {
-        self.passes.widen(scheme);
+        self.tiles.widen(scheme);
         self.balance = Some(vec![Sums::default(); scheme.operators.blocks.len()]);
         self
     }

@@ -1,7 +1,7 @@
 //! Fluxes (3) of the four faces of a block, lifted: len (Flux* - own flux of the F rows).
 
 use super::balance::{FacePower, Sums};
-use super::tiles::{STORES, Slot};
+use super::tiles::Slot;
 use super::volume::{Arrays, width};
 use super::{Scheme, Stage};
 use crate::boundary::FacePoint;
@@ -57,8 +57,12 @@ fn turned<L: Lanes, const W: usize>(mut x: [L; W]) -> [L; W] {
 /// All traces under way.
 #[derive(Clone, Copy)]
 pub(super) struct Traces<'a> {
-    /// By store: one number, then [slot][face][point][width], then one more.
-    pub all: &'a [Vec<F8>; STORES],
+    /// Those of the tile: one number, then [slot][face][point][width], then one more. So are the others.
+    pub own: &'a [F8],
+    /// What all tiles have shown before this phase, by store.
+    pub seen: &'a [Vec<F8>],
+    /// What the tile will have shown after it.
+    pub shown: &'a [F8],
     /// The slot of each block.
     pub slots: &'a [Slot],
 }
@@ -69,7 +73,11 @@ impl<'a> Traces<'a> {
     #[inline(always)]
     fn around(&self, face: usize, count: usize, length: usize) -> &'a [F8] {
         let slot = self.slots[face / 4];
-        &self.all[slot.store()][(4 * slot.index() + face % 4) * length..][..count * length + 2]
+        let store = match slot.store {
+            0 => self.own,
+            store => self.seen.get(store as usize - 1).map_or(self.shown, |seen| &seen[..]),
+        };
+        &store[(4 * slot.index as usize + face % 4) * length..][..count * length + 2]
     }
 
     /// Those of `count` faces.

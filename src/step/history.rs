@@ -62,11 +62,6 @@ impl Histories {
         }
     }
 
-    /// Numbers of all blocks before one.
-    pub fn before(&self, block: usize) -> usize {
-        self.first.get(block).copied().unwrap_or(0)
-    }
-
     /// Those of a block, none for an elastic one.
     #[inline]
     pub fn of<'a>(&self, internal: &'a [F8], block: usize) -> &'a [F8] {

@@ -13,7 +13,6 @@ mod energy;
 mod finish;
 mod flux;
 pub mod history;
-mod out;
 pub mod phase;
 mod predictor;
 mod runge_kutta;
@@ -86,7 +85,7 @@ pub struct Work {
     /// Its wave speeds, see [`Survey`].
     speed: Vec<F8>,
     /// Rates and traces under way.
-    passes: schedule::Passes,
+    tiles: schedule::Tiles,
     /// The balance of the step, by block; none where nobody asks for it.
     balance: Option<Vec<balance::Sums>>,
     /// One a thread.
@@ -120,7 +119,7 @@ impl Work {
         Self {
             next: state.clone(),
             speed: vec![F8::ZERO; operators.blocks.len()],
-            passes: schedule::Passes::new(scheme, state.components * operators.nodes()),
+            tiles: schedule::Tiles::new(scheme, state.components * operators.nodes()),
             balance: None,
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
             rate: phase::Rate::start(),
@@ -139,7 +138,7 @@ impl Work {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let numbers = self.next.u.len() + self.next.internal.len() + self.speed.len() + self.passes.numbers();
+        let numbers = self.next.u.len() + self.next.internal.len() + self.speed.len() + self.tiles.numbers();
         numbers * size_of::<F8>() + self.balance.as_ref().map_or(0, |sums| size_of_val(&sums[..]))
     }
 }

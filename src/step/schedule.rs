@@ -1,84 +1,83 @@
 //! The stages of a step on all blocks, by the plan of [`tiles`].
 
-use super::out::Out;
+use super::balance::Sums;
 use super::survey::Worst;
-use super::tiles::{self, Event, Piece, STORES, Slot, TILES};
+use super::tiles::{self, Event, Plan, Slot};
 use super::{Scheme, Scratch, Stage, Survey, Work, begin, finish, flux, volume, with_scratch};
 use crate::lane::{self, F8};
 use crate::operators::Operators;
 use crate::state::State;
-use std::mem::swap;
-use std::ops::Range;
 use std::sync::Mutex;
 
-/// A pass with its memory.
-pub(super) struct Pass {
-    plan: tiles::Pass,
-    /// By store, dU/dt: [slot][stage][component][node].
-    rates: [Vec<F8>; STORES],
-    /// By store, see [`flux::Traces`], with [`volume::width`] numbers a point.
-    traces: [Vec<F8>; STORES],
-    /// The worst of the blocks of which it made the new state in the last step.
+/// A tile of blocks with its memory.
+struct Tile {
+    plan: tiles::Tile,
+    /// dU/dt: [slot][stage][component][node].
+    rates: Vec<F8>,
+    /// See [`flux::Traces`], with [`volume::width`] numbers a point.
+    traces: Vec<F8>,
+    /// The worst of its blocks after the last step.
     worst: Worst,
 }
 
-impl Pass {
-    /// With so many numbers of the rates and of the traces of a block.
-    fn new(plan: tiles::Pass, rates: usize, traces: usize) -> Self {
-        Self {
-            rates: plan.rates.map(|slots| vec![F8::ZERO; slots * rates]),
-            traces: plan.traces.map(|slots| vec![F8::ZERO; slots * traces + 2]),
-            worst: Worst::NONE,
-            plan,
-        }
-    }
-}
-
-/// All passes of a step.
-pub(super) struct Passes {
-    /// One after the other to the blocks' end.
-    tiles: Vec<Pass>,
-    ranges: Vec<Range<usize>>,
-    seams: Vec<Pass>,
-    pieces: Vec<Piece>,
+/// The tiles of a step.
+pub(super) struct Tiles {
+    tiles: Vec<Tile>,
+    phases: usize,
+    /// The traces that each tile shows: [phase][tile].
+    shown: Vec<Vec<F8>>,
+    /// Slots of each of them.
+    shown_slots: Vec<usize>,
     /// The slot of the traces of each block: [stage][block].
     slots: Vec<Slot>,
     /// Whether the unknowns come from memory, see [`FAR`].
     far: bool,
 }
 
-impl Passes {
+impl Tiles {
     /// For states with `stride` numbers a block, on the current number of threads.
     pub fn new(scheme: &Scheme, stride: usize) -> Self {
         let (stages, blocks) = (scheme.stages(), &scheme.operators.blocks);
-        let threads = rayon::current_num_threads().max(1);
-        let tiles::Plan { tiles, seams, ranges, pieces, slots } =
-            tiles::Plan::new(&tiles::graph(blocks), stages, threads);
-        let numbers = scheme.block_traces(false);
-        let with_memory =
-            |plans: Vec<tiles::Pass>| plans.into_iter().map(|plan| Pass::new(plan, stages * stride, numbers)).collect();
-        let far = blocks.len() * stride * size_of::<F8>() > FAR;
-        Self { tiles: with_memory(tiles), seams: with_memory(seams), ranges, pieces, slots, far }
+        let plan = Plan::new(&tiles::graph(blocks), stages, rayon::current_num_threads().max(1));
+        let phases = plan.phases();
+        let tile = |plan: tiles::Tile| {
+            let rates = vec![F8::ZERO; plan.rates * stages * stride];
+            Tile { rates, traces: vec![], worst: Worst::NONE, plan }
+        };
+        let mut out = Self {
+            tiles: plan.tiles.into_iter().map(tile).collect(),
+            phases,
+            shown: vec![vec![]; plan.shown.len()],
+            shown_slots: plan.shown,
+            slots: plan.slots,
+            far: blocks.len() * stride * size_of::<F8>() > FAR,
+        };
+        out.make_room(scheme.block_traces(false));
+        out
     }
 
     /// Makes room for the numbers that the balance of energy needs.
     pub fn widen(&mut self, scheme: &Scheme) {
-        for pass in self.tiles.iter_mut().chain(&mut self.seams) {
-            for (traces, slots) in pass.traces.iter_mut().zip(pass.plan.traces) {
-                traces.resize(slots * scheme.block_traces(true) + 2, F8::ZERO);
-            }
+        self.make_room(scheme.block_traces(true));
+    }
+
+    /// Makes room for so many numbers of the traces of a block.
+    fn make_room(&mut self, numbers: usize) {
+        let own = self.tiles.iter_mut().map(|tile| (&mut tile.traces, tile.plan.traces));
+        for (traces, slots) in own.chain(self.shown.iter_mut().zip(self.shown_slots.iter().copied())) {
+            traces.resize(slots * numbers + 2, F8::ZERO);
         }
     }
 
     /// The worst of all blocks after the last step.
     pub fn worst(&self) -> Worst {
-        self.tiles.iter().chain(&self.seams).fold(Worst::NONE, |worst, pass| worst.and(pass.worst))
+        self.tiles.iter().fold(Worst::NONE, |worst, tile| worst.and(tile.worst))
     }
 
     /// Numbers of eight lanes held.
     pub fn numbers(&self) -> usize {
-        let of = |pass: &Pass| pass.rates.iter().chain(&pass.traces).map(Vec::len).sum::<usize>();
-        self.tiles.iter().chain(&self.seams).map(of).sum()
+        let own = self.tiles.iter().map(|tile| tile.rates.len() + tile.traces.len());
+        own.chain(self.shown.iter().map(Vec::len)).sum()
     }
 }
 
@@ -89,30 +88,30 @@ const FAR: usize = 4 << 20;
 /// So many blocks ahead memory is asked for.
 const AHEAD: usize = 2;
 
-/// What a pass makes, see [`Out`]: of a tile all in one, of a seam by the store of its pieces.
-type Outs<'a> = [Out<'a>; STORES];
-
-/// A pass under way.
-struct Run<'a> {
+/// A phase of a tile under way.
+struct Pass<'a> {
     step: Step<'a>,
-    pass: &'a mut Pass,
-    outs: Outs<'a>,
-    /// Which of them is meant by the number of a store: of a tile always the first.
-    mask: usize,
+    tile: &'a mut Tile,
+    /// The traces that it shows after this phase.
+    shown: &'a mut [F8],
+    /// What the step makes of the tile.
+    out: Out<'a>,
     scratch: &'a mut Scratch,
 }
 
-impl Run<'_> {
+impl Pass<'_> {
     fn run(mut self) {
-        self.pass.worst = Worst::NONE;
-        for number in 0..self.pass.plan.events.len() {
-            let event = self.pass.plan.events[number];
+        if self.step.phase == 0 {
+            self.tile.worst = Worst::NONE;
+        }
+        for number in self.tile.plan.phases[self.step.phase].clone() {
+            let event = self.tile.plan.events[number];
             if event.begins { self.begin(&event) } else { self.finish(&event) }
         }
     }
 
     fn begin(&mut self, event: &Event) {
-        let Self { step, pass, outs, mask, scratch } = self;
+        let Self { step, tile, shown, out, scratch } = self;
         let Step { scheme, stages, state, survey, slots, far, .. } = *step;
         let (block, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
         let blocks = scheme.operators.blocks.len();
@@ -123,10 +122,10 @@ impl Run<'_> {
             }
         }
         let stride = state.components * scheme.operators.nodes();
-        let rates = rates_of(&mut pass.rates, event.rates, stages.len() * stride);
+        let rates = &mut tile.rates[event.rates as usize * stages.len() * stride..][..stages.len() * stride];
         let (before, now) = rates.split_at_mut(stage.number * stride);
-        let out = &mut outs[event.rates.store() & *mask];
         let (slot, numbers) = (slots[stage.number * blocks + block], scheme.block_traces(out.balance.is_some()));
+        let traces = if slot.store == 0 { &mut tile.traces[..] } else { &mut shown[..] };
         let work = begin::Block {
             scheme,
             stage,
@@ -134,36 +133,35 @@ impl Run<'_> {
             state,
             before,
             rate: &mut now[..stride],
-            traces: &mut pass.traces[slot.store()][1 + slot.index() * numbers..][..numbers],
-            sums: out.sums(block),
+            traces: &mut traces[1 + slot.index as usize * numbers..][..numbers],
+            sums: out.balance.as_mut().and_then(|sums| sums.get_mut(block - out.first)),
             scratch,
         };
         work.run();
     }
 
     fn finish(&mut self, event: &Event) {
-        let Self { step, pass, outs, mask, scratch } = self;
-        let Step { scheme, stages, state, survey, slots, far, .. } = *step;
+        let Self { step, tile, shown, out, scratch } = self;
+        let Step { scheme, stages, state, survey, slots, seen, far, .. } = *step;
         let (block, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
-        let blocks = scheme.operators.blocks.len();
+        let (blocks, at) = (scheme.operators.blocks.len(), block - out.first);
         let stride = state.components * scheme.operators.nodes();
-        let rates = rates_of(&mut pass.rates, event.rates, stages.len() * stride);
+        let rates = &mut tile.rates[event.rates as usize * stages.len() * stride..][..stages.len() * stride];
         let (before, now) = rates.split_at_mut(stage.number * stride);
-        let out = &mut outs[event.rates.store() & *mask];
         let is_last = stage.number + 1 == stages.len();
         if far && is_last {
-            out.ask_for(block + AHEAD, stride);
+            out.ask_for(at + AHEAD, stride);
         }
-        let at = block - out.first;
         let new = is_last.then(|| {
-            let (history, start) = (scheme.histories.range(block), scheme.histories.before(out.first));
+            let (history, start) = (scheme.histories.range(block), scheme.histories.range(out.first).start);
             finish::New {
                 u: &mut out.u[at * stride..][..stride],
                 internal: &mut out.internal[history.start - start..history.end - start],
                 speed: &mut out.speed[at],
-                worst: &mut pass.worst,
+                worst: &mut tile.worst,
             }
         });
+        let slots = &slots[stage.number * blocks..][..blocks];
         let work = finish::Block {
             scheme,
             stage,
@@ -172,7 +170,7 @@ impl Run<'_> {
             survey,
             before,
             rate: &mut now[..stride],
-            traces: flux::Traces { all: &pass.traces, slots: &slots[stage.number * blocks..][..blocks] },
+            traces: flux::Traces { own: &tile.traces, seen, shown, slots },
             new,
             sums: out.balance.as_mut().and_then(|sums| sums.get_mut(at)),
             scratch,
@@ -181,13 +179,49 @@ impl Run<'_> {
     }
 }
 
-/// The rates of a block, of which each has so many numbers.
-#[inline]
-fn rates_of(stores: &mut [Vec<F8>; STORES], slot: Slot, numbers: usize) -> &mut [F8] {
-    &mut stores[slot.store()][slot.index() * numbers..][..numbers]
+/// What a step makes of the blocks of some tiles that follow each other.
+struct Out<'a> {
+    /// The first of them.
+    first: usize,
+    /// New unknowns.
+    u: &'a mut [F8],
+    /// New internal variables.
+    internal: &'a mut [F8],
+    /// New wave speeds.
+    speed: &'a mut [F8],
+    /// The balance of the blocks; none where it is off.
+    balance: Option<&'a mut [Sums]>,
 }
 
-/// A step under way.
+impl<'a> Out<'a> {
+    /// Asks for what will be written of a block. (A store to a line that is not there waits as a load does.)
+    #[inline]
+    fn ask_for(&self, block: usize, stride: usize) {
+        if let Some(u) = self.u.get(stride * block..stride * (block + 1)) {
+            lane::prefetch(u);
+            lane::prefetch(&self.speed[block..=block]);
+        }
+    }
+
+    /// The same for a shorter time.
+    fn again(&mut self) -> Out<'_> {
+        let balance = self.balance.as_deref_mut();
+        Out { first: self.first, u: self.u, internal: self.internal, speed: self.speed, balance }
+    }
+
+    /// Those of the first `blocks`, with so many internal variables, and the rest.
+    fn split(self, blocks: usize, stride: usize, internal: usize) -> (Self, Self) {
+        let (first, second) = (self.first, self.first + blocks);
+        let (u, u2) = self.u.split_at_mut(blocks * stride);
+        let (internal, internal2) = self.internal.split_at_mut(internal);
+        let (speed, speed2) = self.speed.split_at_mut(blocks);
+        let (balance, balance2) = self.balance.map(|sums| sums.split_at_mut(blocks)).unzip();
+        let left = Out { first, u, internal, speed, balance };
+        (left, Out { first: second, u: u2, internal: internal2, speed: speed2, balance: balance2 })
+    }
+}
+
+/// A phase of a step under way.
 #[derive(Clone, Copy)]
 struct Step<'a> {
     scheme: &'a Scheme,
@@ -197,73 +231,43 @@ struct Step<'a> {
     slots: &'a [Slot],
     far: bool,
     scratch: &'a [Mutex<Scratch>],
+    phase: usize,
+    /// The traces that tiles have shown in the phases before.
+    seen: &'a [Vec<F8>],
 }
 
 impl Step<'_> {
-    fn pass(self, pass: &mut Pass, outs: Outs, mask: usize) {
-        with_scratch(self.scratch, |scratch| Run { step: self, pass, outs, mask, scratch }.run());
-    }
-
-    /// The first phase. Halves until a tile is left: nothing may be allocated.
-    fn tiles(self, tiles: &mut [Pass], ranges: &[Range<usize>], out: Out) {
-        match tiles {
-            [] => {}
-            [tile] => self.pass(tile, [out, Out::default(), Out::default(), Out::default()], 0),
-            _ => {
+    /// Halves until a tile is left: nothing may be allocated.
+    fn run(self, tiles: &mut [Tile], shown: &mut [Vec<F8>], out: Out) {
+        match (tiles, shown) {
+            ([tile], [shown]) => with_scratch(self.scratch, |scratch| {
+                Pass { step: self, tile, shown, out, scratch }.run();
+            }),
+            (tiles, shown) if tiles.len() > 1 => {
                 let half = tiles.len() / 2;
-                let (left, right) = tiles.split_at_mut(half);
-                let (one, two) = out.split(ranges[half].start, &self.scheme.histories);
-                rayon::join(|| self.tiles(left, &ranges[..half], one), || self.tiles(right, &ranges[half..], two));
-            }
-        }
-    }
-
-    /// The second phase, with what each seam makes.
-    fn seams(self, seams: &mut [Pass], outs: &mut [Outs]) {
-        match (seams, outs) {
-            ([seam], [outs, ..]) => self.pass(seam, std::mem::take(outs), STORES - 1),
-            (seams, outs) if seams.len() > 1 => {
-                let half = seams.len() / 2;
-                let ((left, right), (one, two)) = (seams.split_at_mut(half), outs.split_at_mut(half));
-                rayon::join(|| self.seams(left, one), || self.seams(right, two));
+                let ((left, right), (shown, shown2)) = (tiles.split_at_mut(half), shown.split_at_mut(half));
+                let (start, middle) = (left[0].plan.range.start, right[0].plan.range.start);
+                let first = |block| self.scheme.histories.range(block).start;
+                let stride = self.state.components * self.scheme.operators.nodes();
+                let (one, two) = out.split(middle - start, stride, first(middle) - first(start));
+                rayon::join(|| self.run(left, shown, one), || self.run(right, shown2, two));
             }
             _ => {}
         }
     }
 }
 
-/// Hands what is under way of the pieces from tiles to seams, or back.
-fn hand_over(pieces: &[Piece], tiles: &mut [Pass], seams: &mut [Pass]) {
-    for &Piece { tile, seam, store, .. } in pieces {
-        let (tile, seam) = (&mut tiles[tile], &mut seams[seam]);
-        swap(&mut tile.rates[store], &mut seam.rates[store]);
-        swap(&mut tile.traces[store], &mut seam.traces[store]);
-    }
-}
-
-/// Hands out what each of the seams makes.
-fn hand_out<'a>(pieces: &[Piece], mut rest: Out<'a>, scheme: &Scheme) -> [Outs<'a>; TILES] {
-    let mut outs: [Outs; TILES] = std::array::from_fn(|_| Outs::default());
-    for Piece { seam, store, range, .. } in pieces {
-        let (_, from) = rest.split(range.start, &scheme.histories);
-        (outs[*seam][*store], rest) = from.split(range.end, &scheme.histories);
-    }
-    outs
-}
-
 impl Scheme {
     /// All stages of a step.
     pub(super) fn run_stages(&self, stages: &[Stage], state: &State, survey: &Survey, work: &mut Work) {
-        let Work { passes, next, speed, balance, scratch, .. } = work;
-        let Passes { tiles, ranges, seams, pieces, slots, far } = passes;
-        let (u, internal) = (&mut next.u[..], &mut next.internal[..]);
-        let mut out = Out { first: 0, u, internal, speed, balance: balance.as_deref_mut() };
-        let step = Step { scheme: self, stages, state, survey, slots, far: *far, scratch };
-        step.tiles(tiles, ranges, out.again());
-        if !seams.is_empty() {
-            hand_over(pieces, tiles, seams);
-            step.seams(seams, &mut hand_out(pieces, out, self));
-            hand_over(pieces, tiles, seams);
+        let Work { tiles: Tiles { tiles, phases, shown, slots, far, .. }, next, speed, balance, scratch, .. } = work;
+        let (u, internal, balance) = (&mut next.u[..], &mut next.internal[..], balance.as_deref_mut());
+        let mut out = Out { first: 0, u, internal, speed, balance };
+        let count = tiles.len();
+        for phase in 0..*phases {
+            let (seen, shown) = shown.split_at_mut(phase * count);
+            let step = Step { scheme: self, stages, state, survey, slots, far: *far, scratch, phase, seen };
+            step.run(tiles, &mut shown[..count], out.again());
         }
     }
 

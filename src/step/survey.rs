@@ -118,7 +118,7 @@ impl Scheme {
     pub fn surveyed(&self, memory: &mut Memory, out: &mut Survey) -> Result<(), Loss> {
         std::mem::swap(&mut out.speed, &mut memory.speed);
         memory.speed.resize(out.speed.len(), F8::ZERO);
-        self.judge(memory.passes.worst(), &memory.next, out)
+        self.judge(memory.tiles.worst(), &memory.next, out)
     }
 
     fn judge(&self, worst: Worst, state: &State, out: &mut Survey) -> Result<(), Loss> {

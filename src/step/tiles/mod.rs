@@ -2,50 +2,25 @@
 //!
 //! A step is one pass over memory: `finish` follows `begin` as closely as neighbours allow, each stage follows the one
 //! before it, and rates and traces live in a few slots that are used again as soon as nobody needs what they hold, so
-//! that they stay in the cache. With several threads each first does all of a tile of blocks that needs nothing from beyond
-//! it, a layer less with each stage; then what is left at the seams between tiles is done, seam by seam. Nothing is done
-//! twice, threads wait for each other between the two phases only, and the bits do not depend on it.
+//! that they stay in the cache. With several threads each has a tile of blocks, and first does all of it that needs nothing
+//! from beyond it: a layer of blocks less with each stage. Then, in a phase for each stage, they show each other the traces
+//! at the borders of the tiles, and each goes on as far as these reach. Nothing is done twice, nothing but these traces goes
+//! from one processor to another, and the bits do not depend on it.
 
-mod order;
-mod seams;
-mod slots;
+mod planner;
 
 use super::Stage;
 use crate::operators::{Blocks, Neighbour};
-use order::Order;
-use seams::Seams;
+use planner::Planner;
 use std::ops::Range;
 
-/// Stores of a pass: number 0 is its own, the others are pieces, see [`Piece`].
-pub const STORES: usize = 4;
-
-/// Tiles of a step at most: what each makes of the new state is listed on the stack.
-pub const TILES: usize = 128;
-
-/// A place in one of the stores.
+/// A place for the traces of a block in one stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Slot(u32);
-
-impl Slot {
-    /// The place `index` of a store.
-    fn new(store: usize, index: usize) -> Self {
-        Self((store as u32) << Self::BITS | index as u32)
-    }
-
-    /// Bits of an index.
-    const BITS: u32 = u32::BITS - STORES.ilog2();
-
-    /// The store.
-    #[inline(always)]
-    pub fn store(self) -> usize {
-        (self.0 >> Self::BITS) as usize
-    }
-
+pub struct Slot {
+    /// 0: that of the tile, for none but itself; 1 + phase x tiles + tile: what the tile shows from that phase on.
+    pub store: u32,
     /// The place in it.
-    #[inline(always)]
-    pub fn index(self) -> usize {
-        (self.0 & ((1 << Self::BITS) - 1)) as usize
-    }
+    pub index: u32,
 }
 
 /// What is done next.
@@ -54,76 +29,67 @@ pub struct Event {
     /// The block.
     pub block: u32,
     /// The slot of its rates.
-    pub rates: Slot,
+    pub rates: u32,
     /// The stage.
     pub stage: u8,
     /// Whether it begins; else it finishes.
     pub begins: bool,
 }
 
-/// What one thread does without waiting for anybody.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Pass {
+/// What one thread does.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Tile {
     /// In their order.
     pub events: Vec<Event>,
-    /// Slots of the rates of a block in all stages, by store.
-    pub rates: [usize; STORES],
-    /// Slots of the traces of a block in one stage, by store.
-    pub traces: [usize; STORES],
-}
-
-/// The blocks of a tile that are not done after the first phase, at one of its seams. What is under way of them is handed
-/// from the tile to the seam: a store that has the same number in both.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Piece {
-    /// The tile.
-    pub tile: usize,
-    /// The seam.
-    pub seam: usize,
-    /// The number of the store.
-    pub store: usize,
-    /// From its first block to its last, with some others of the tile that have been done in the first phase.
+    /// Which of them are done in each phase.
+    pub phases: Vec<Range<usize>>,
+    /// Slots of the rates of a block in all stages.
+    pub rates: usize,
+    /// Slots of the traces of a block in one stage that no other tile reads.
+    pub traces: usize,
+    /// Its blocks.
     pub range: Range<usize>,
 }
 
 /// The events of a step.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Plan {
-    /// The first phase.
-    pub tiles: Vec<Pass>,
-    /// The second phase; nothing where there is one tile.
-    pub seams: Vec<Pass>,
-    /// The blocks of each tile.
-    pub ranges: Vec<Range<usize>>,
-    /// In the order of the blocks; those of different seams do not overlap.
-    pub pieces: Vec<Piece>,
-    /// The slots of the traces: [stage][block].
+    /// One after the other to the blocks' end.
+    pub tiles: Vec<Tile>,
+    /// The slots of the traces of each block: [stage][block].
     pub slots: Vec<Slot>,
+    /// Slots of the traces that each tile shows: [phase][tile].
+    pub shown: Vec<usize>,
 }
+
+/// Events in the time of which threads meet.
+const MEETING: usize = 16;
 
 impl Plan {
     /// A plan for as many tiles of equal size, up to `threads`, as make the longest way through the step shorter by a
     /// quarter at least: threads that wait for each other are other people's time.
     pub fn new(graph: &[Vec<usize>], stages: usize, threads: usize) -> Self {
-        let mut best = Order::new(graph, stages, 1).plan(Seams::default());
-        let mut tiles = threads.min(TILES);
+        let mut best = Planner::new(graph, stages, 1).plan();
+        let mut tiles = threads;
         while tiles > 1 {
-            let order = Order::new(graph, stages, tiles);
-            if let Some(seams) = Seams::new(&order) {
-                let found = order.plan(seams);
-                if 4 * found.longest() < 3 * best.longest() {
-                    best = found;
-                }
+            let found = Planner::new(graph, stages, tiles).plan();
+            if 4 * found.longest() < 3 * best.longest() {
+                best = found;
             }
             tiles /= 2;
         }
         best
     }
 
+    /// The number of phases.
+    pub fn phases(&self) -> usize {
+        self.tiles.first().map_or(0, |tile| tile.phases.len())
+    }
+
     /// Events that follow each other.
     fn longest(&self) -> usize {
-        let longest = |passes: &[Pass]| passes.iter().map(|pass| pass.events.len()).max().unwrap_or(0);
-        longest(&self.tiles) + longest(&self.seams)
+        let longest = |phase: usize| self.tiles.iter().map(|tile| tile.phases[phase].len()).max().unwrap_or(0);
+        (0..self.phases()).map(|phase| longest(phase) + MEETING).sum()
     }
 }
 

@@ -60,93 +60,99 @@ fn stage_by_stage(graph: &[Vec<usize>], stages: usize) -> Vec<Option<u64>> {
     rates.iter().enumerate().map(|(block, rates)| Some(begun(block, rates))).collect()
 }
 
-/// The stores of a pass, and the blocks of which it has made the new state.
+/// What a tile has under way.
 struct Memory {
-    rates: [Vec<Vec<u64>>; STORES],
-    traces: [Vec<u64>; STORES],
-    made: Vec<(usize, usize)>,
+    rates: Vec<Vec<u64>>,
+    traces: Vec<u64>,
 }
 
 impl Memory {
-    fn new(pass: &Pass, stages: usize) -> Self {
-        let rates = pass.rates.map(|slots| vec![vec![0; stages]; slots]);
-        Self { rates, traces: pass.traces.map(|slots| vec![0; slots]), made: vec![] }
-    }
-
-    /// Plays a pass with the values that a step would have.
-    fn play(&mut self, pass: &Pass, graph: &[Vec<usize>], slots: &[Slot], next: &mut [Option<u64>]) {
-        for event in &pass.events {
-            let (block, stage, store) = (event.block as usize, event.stage as usize, event.rates.store());
-            let rates = &mut self.rates[store][event.rates.index()];
-            let slot = |block: usize| slots[stage * graph.len() + block];
+    /// Plays a phase with the values that a step would have, from what tiles have `seen`; what the tile shows after it.
+    fn play(
+        &mut self,
+        events: &[Event],
+        plan: &Plan,
+        graph: &[Vec<usize>],
+        seen: &[Vec<u64>],
+        next: &mut [Option<u64>],
+    ) -> Vec<u64> {
+        let mut shown = vec![];
+        for event in events {
+            let (block, stage) = (event.block as usize, event.stage as usize);
+            let rates = &mut self.rates[event.rates as usize];
+            let slot = |block: usize| plan.slots[stage * graph.len() + block];
             if event.begins {
                 rates[stage] = begun(block, &rates[..stage]);
-                self.traces[slot(block).store()][slot(block).index()] = mix(rates[stage], stage as u64);
+                let (slot, trace) = (slot(block), mix(rates[stage], stage as u64));
+                if slot.store == 0 {
+                    self.traces[slot.index as usize] = trace;
+                } else {
+                    assert_eq!(slot.index as usize, shown.len());
+                    shown.push(trace);
+                }
                 continue;
             }
-            let trace = |block: usize| self.traces[slot(block).store()][slot(block).index()];
+            let trace = |block: usize| match slot(block) {
+                Slot { store: 0, index } => self.traces[index as usize],
+                Slot { store, index } => seen.get(store as usize - 1).unwrap_or(&shown)[index as usize],
+            };
             rates[stage] = mix(rates[stage], graph[block].iter().fold(0, |sum, &other| mix(sum, trace(other))));
             if stage + 1 == rates.len() {
                 assert!(next[block].replace(begun(block, rates)).is_none(), "block {block} is finished twice");
-                self.made.push((block, store));
             }
         }
+        shown
     }
 }
 
-/// Plays both phases, with pieces handed over between them, and checks that all that is made lies where it is handed out.
+/// Plays a plan: in each phase a tile sees what all have shown before it.
 fn play(graph: &[Vec<usize>], stages: usize, plan: &Plan) -> Vec<Option<u64>> {
     let mut next = vec![None; graph.len()];
-    let [mut tiles, mut seams] = [&plan.tiles, &plan.seams]
-        .map(|passes| passes.iter().map(|pass| Memory::new(pass, stages)).collect::<Vec<_>>());
-    for ((memory, pass), range) in tiles.iter_mut().zip(&plan.tiles).zip(&plan.ranges) {
-        memory.play(pass, graph, &plan.slots, &mut next);
-        assert!(memory.made.iter().all(|(block, _)| range.contains(block)));
-    }
-    for piece in &plan.pieces {
-        let (tile, seam, k) = (&mut tiles[piece.tile], &mut seams[piece.seam], piece.store);
-        assert!(seam.rates[k].is_empty() && seam.traces[k].is_empty(), "two pieces in store {k}");
-        std::mem::swap(&mut tile.rates[k], &mut seam.rates[k]);
-        std::mem::swap(&mut tile.traces[k], &mut seam.traces[k]);
-    }
-    for (number, (memory, pass)) in seams.iter_mut().zip(&plan.seams).enumerate() {
-        memory.play(pass, graph, &plan.slots, &mut next);
-        for (block, store) in &memory.made {
-            let own = |piece: &&Piece| piece.seam == number && piece.store == *store;
-            assert!(plan.pieces.iter().find(own).is_some_and(|piece| piece.range.contains(block)));
+    let memory = |tile: &Tile| Memory { rates: vec![vec![0; stages]; tile.rates], traces: vec![0; tile.traces] };
+    let mut memories: Vec<Memory> = plan.tiles.iter().map(memory).collect();
+    let mut seen: Vec<Vec<u64>> = vec![];
+    for phase in 0..plan.phases() {
+        let mut shown = vec![];
+        for (memory, tile) in memories.iter_mut().zip(&plan.tiles) {
+            let events = &tile.events[tile.phases[phase].clone()];
+            assert!(events.iter().all(|event| tile.range.contains(&(event.block as usize))));
+            shown.push(memory.play(events, plan, graph, &seen, &mut next));
         }
+        seen.extend(shown);
     }
-    assert!(plan.pieces.windows(2).all(|two| two[0].range.end <= two[1].range.start));
+    assert!(seen.iter().map(Vec::len).eq(plan.shown.iter().copied()));
     next
 }
 
-fn check(graph: &[Vec<usize>], stages: usize, threads: usize) -> Plan {
-    let plan = Plan::new(graph, stages, threads);
-    assert!(plan.tiles.len() <= threads && plan.seams.len() <= plan.tiles.len());
+/// Checks the plan for so many tiles, whether it is worth it or not.
+fn check(graph: &[Vec<usize>], stages: usize, tiles: usize) -> Plan {
+    let plan = Planner::new(graph, stages, tiles).plan();
+    assert!(plan.tiles.len() <= tiles && plan.phases() <= if tiles > 1 { graph.len() * stages } else { 1 });
     assert_eq!(play(graph, stages, &plan), stage_by_stage(graph, stages));
-    let events: usize = plan.tiles.iter().chain(&plan.seams).map(|pass| pass.events.len()).sum();
+    let events: usize = plan.tiles.iter().map(|tile| tile.events.len()).sum();
     assert_eq!(events, 2 * stages * graph.len(), "something is done twice");
+    assert!(plan.tiles.iter().all(|tile| tile.phases.last().is_some_and(|phase| phase.end == tile.events.len())));
     plan
 }
 
 proptest! {
     #[test]
     fn every_plan_of_a_row_gives_what_all_blocks_give_stage_by_stage(
-        n in 1usize..80, reach in 1usize..5, ring: bool, stages in 1usize..6, threads in 1usize..6) {
-        check(&row(n, reach, ring), stages, threads);
+        n in 1usize..80, reach in 1usize..5, ring: bool, stages in 1usize..6, tiles in 1usize..6) {
+        check(&row(n, reach, ring), stages, tiles);
     }
 
     #[test]
     fn every_plan_of_a_sheet_gives_what_all_blocks_give_stage_by_stage(
-        rows in 1usize..60, width in 1usize..5, ring: bool, stages in 1usize..6, threads in 1usize..6) {
-        check(&sheet(rows, width, ring), stages, threads);
+        rows in 1usize..60, width in 1usize..5, ring: bool, stages in 1usize..6, tiles in 1usize..6) {
+        check(&sheet(rows, width, ring), stages, tiles);
     }
 
     #[test]
     fn every_plan_of_any_graph_gives_what_all_blocks_give_stage_by_stage(
-        n in 1usize..200, reach in 1usize..3, ring: bool, stages in 1usize..4, threads in 1usize..6,
+        n in 1usize..200, reach in 1usize..3, ring: bool, stages in 1usize..4, tiles in 1usize..6,
         links in prop::collection::vec((0usize..200, 0usize..200), 0..6)) {
-        check(&tangled(n, reach, ring, &links), stages, threads);
+        check(&tangled(n, reach, ring, &links), stages, tiles);
     }
 }
 
@@ -155,35 +161,38 @@ fn slots_are_as_few_as_the_blocks_under_way() {
     let plan = Plan::new(&row(1000, 4, false), 4, 1);
     let [tile] = &plan.tiles[..] else { panic!("one thread has one tile") };
     // A stage follows the one before it by the reach of 4, and a trace is read by blocks up to 4 behind and before.
-    assert!(tile.rates[0] <= 4 * 5 + 4 && tile.traces[0] <= 4 * 10, "{:?} {:?}", tile.rates, tile.traces);
+    assert!(tile.rates <= 4 * 5 + 4 && tile.traces <= 4 * 10, "{} {}", tile.rates, tile.traces);
     assert_eq!(tile.events.len(), 2 * 4 * 1000);
-    assert!(plan.seams.is_empty() && plan.pieces.is_empty());
+    assert_eq!(plan.shown, [0]);
 }
 
 #[test]
-fn a_ring_has_as_many_seams_as_tiles_and_a_chain_one_less() {
+fn tiles_meet_once_for_each_stage_and_show_a_layer_each_time() {
     for tiles in [2, 3, 4] {
         for ring in [false, true] {
-            let plan = check(&sheet(25 * tiles, 4, ring), 5, tiles);
-            let seams = if ring { tiles } else { tiles - 1 };
-            assert_eq!([plan.tiles.len(), plan.seams.len(), plan.pieces.len()], [tiles, seams, 2 * seams]);
-            // In the first phase each row next to a seam begins one stage and finishes none, the next one more.
-            let left: usize = plan.seams.iter().map(|seam| seam.events.len()).sum();
-            assert_eq!(left, seams * 2 * 4 * (9 + 7 + 5 + 3 + 1));
+            let (graph, stages) = (sheet(25 * tiles, 4, ring), 5);
+            let plan = check(&graph, stages, tiles);
+            assert_eq!([plan.tiles.len(), plan.phases()], [tiles, stages + 1]);
+            for (tile, phase) in (0..tiles).flat_map(|tile| (0..=stages).map(move |phase| (tile, phase))) {
+                let seams = if ring || (tile > 0 && tile + 1 < tiles) { 2 } else { 1 };
+                let shown = if phase < stages { seams * 4 } else { 0 };
+                assert_eq!(plan.shown[phase * tiles + tile], shown);
+                // After the first phase a row at a seam has begun one stage and finished none, the next one more.
+                let events = plan.tiles[tile].phases[phase].len();
+                let left = |phase: usize| seams * 4 * (stages - phase) * (stages - phase);
+                let expected = if phase == 0 { 2 * 100 * stages - left(0) } else { left(phase - 1) - left(phase) };
+                assert_eq!(events, expected);
+            }
         }
     }
 }
 
 #[test]
-fn blocks_that_all_touch_each_other_are_one_tile() {
-    assert_eq!(Plan::new(&row(4, 3, false), 3, 2).tiles.len(), 1);
-}
-
-#[test]
-fn seams_that_do_not_lie_side_by_side_are_one() {
-    // Two chains, of the even and of the odd blocks.
-    let graph: Vec<Vec<usize>> =
-        (0..200).map(|a: usize| (0..200).filter(|&b| matches!(a.abs_diff(b), 0 | 2)).collect()).collect();
-    let plan = check(&graph, 2, 2);
-    assert_eq!([plan.tiles.len(), plan.seams.len(), plan.pieces.len()], [2, 1, 2]);
+fn so_many_tiles_as_are_worth_it() {
+    let count = |graph: &[Vec<usize>], threads| Plan::new(graph, 3, threads).tiles.len();
+    assert_eq!(count(&sheet(50, 10, true), 1), 1);
+    assert_eq!(count(&sheet(50, 10, true), 2), 2);
+    assert_eq!(count(&sheet(50, 10, true), 3), 3);
+    // Too little for two to be quicker: they would meet more than they do.
+    assert_eq!(count(&row(6, 1, false), 2), 1);
 }
