@@ -115,10 +115,10 @@ impl Pass<'_> {
         let Step { scheme, stages, state, survey, slots, far, .. } = *step;
         let (block, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
         let blocks = scheme.operators.blocks.len();
-        if stage.number == 0 && block + AHEAD < blocks {
-            scheme.ask_for(state, block + AHEAD);
+        if let (0, Some(later)) = (stage.number, tile.plan.after(block, AHEAD)) {
+            scheme.ask_for(state, later);
             if far {
-                scheme.ask_for_more(survey, block + AHEAD);
+                scheme.ask_for_more(survey, later);
             }
         }
         let stride = state.components * scheme.operators.nodes();
@@ -149,8 +149,8 @@ impl Pass<'_> {
         let rates = &mut tile.rates[event.rates as usize * stages.len() * stride..][..stages.len() * stride];
         let (before, now) = rates.split_at_mut(stage.number * stride);
         let is_last = stage.number + 1 == stages.len();
-        if far && is_last {
-            out.ask_for(at + AHEAD, stride);
+        if let (true, Some(later)) = (far && is_last, tile.plan.after(block, AHEAD)) {
+            out.ask_for(later - out.first, stride);
         }
         let new = is_last.then(|| {
             let (history, start) = (scheme.histories.range(block), scheme.histories.range(out.first).start);

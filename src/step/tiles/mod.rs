@@ -4,7 +4,8 @@
 //! before it, and rates and traces live in a few slots that are used again as soon as nobody needs what they hold, so
 //! that they stay in the cache. With several threads each has a tile of blocks, and first does all of it that needs nothing
 //! from beyond it: a layer of blocks less with each stage. Then, in a phase for each stage, they show each other the traces
-//! at the borders of the tiles, and each goes on as far as these reach. Nothing is done twice, nothing but these traces goes
+//! at the borders of the tiles, and each goes on as far as these reach. (Twice so, at the seams where two tiles begin and at
+//! those where they end: what waits at them would leave the cache meanwhile.) Nothing is done twice, nothing but these traces goes
 //! from one processor to another, and the bits do not depend on it.
 
 mod planner;
@@ -49,6 +50,23 @@ pub struct Tile {
     pub traces: usize,
     /// Its blocks.
     pub range: Range<usize>,
+    /// Whether they are begun from the last to the first: tiles side by side begin, or end, where they touch each other.
+    pub falls: bool,
+}
+
+impl Tile {
+    /// Its blocks in the order in which they are begun.
+    fn blocks(&self) -> impl Iterator<Item = usize> + use<> {
+        let (Range { start, end }, falls) = (self.range.clone(), self.falls);
+        self.range.clone().map(move |block| if falls { start + end - 1 - block } else { block })
+    }
+
+    /// The block that is begun so many after another; none where that is not in the tile.
+    #[inline]
+    pub fn after(&self, block: usize, count: usize) -> Option<usize> {
+        let after = if self.falls { block.checked_sub(count)? } else { block + count };
+        self.range.contains(&after).then_some(after)
+    }
 }
 
 /// The events of a step.

@@ -26,9 +26,10 @@ pub struct Planner<'a> {
     begun: Vec<usize>,
     seen: Vec<usize>,
     finished: Vec<usize>,
-    /// By block, its tile, and whether another one reads its traces.
+    /// By block, its tile, whether another one reads its traces, and whether it is begun before others are.
     tile: Vec<usize>,
     shows: Vec<bool>,
+    early: Vec<bool>,
     /// By stage and block, how many have still to read the traces, and their slot.
     readers: Vec<u32>,
     slots: Vec<Slot>,
@@ -49,7 +50,7 @@ impl<'a> Planner<'a> {
         let size = count.div_ceil(tiles).max(1);
         let tile_of = |first: usize| {
             let range = first..count.min(first + size);
-            Tile { events: vec![], phases: vec![], rates: 0, traces: 0, range }
+            Tile { events: vec![], phases: vec![], rates: 0, traces: 0, range, falls: first / size % 2 == 1 }
         };
         let tiles: Vec<Tile> = (0..count).step_by(size).map(tile_of).collect();
         let slots = || tiles.iter().map(|_| Slots::default()).collect();
@@ -62,6 +63,7 @@ impl<'a> Planner<'a> {
             finished: vec![0; count],
             tile: (0..count).map(|block| block / size).collect(),
             shows: graph.iter().enumerate().map(shows).collect(),
+            early: early(graph, stages, &tiles),
             readers: graph.iter().map(|near| near.len() as u32).collect::<Vec<_>>().repeat(stages),
             slots: vec![Slot::default(); stages * count],
             rate: vec![0; count],
@@ -72,14 +74,12 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// Phase by phase until all is done.
+    /// Phase by phase until all is done: first at the seams where tiles begin, then on to those where they end. What waits
+    /// there for the next phase is still in the cache.
     pub fn plan(mut self) -> Plan {
-        while self.finished.iter().any(|&finished| finished < self.stages) {
-            self.seen.clone_from(&self.begun);
-            self.shown.extend(self.tiles.iter().map(|_| 0));
-            for tile in 0..self.tiles.len() {
-                self.phase(tile);
-            }
+        for early in [true, false] {
+            let mut begins = Some(early);
+            while self.phase(begins.take()) {}
         }
         for ((tile, rates), traces) in self.tiles.iter_mut().zip(&self.rates).zip(&self.traces) {
             (tile.rates, tile.traces) = (rates.count as usize, traces.count as usize);
@@ -87,17 +87,31 @@ impl<'a> Planner<'a> {
         Plan { tiles: self.tiles, slots: self.slots, shown: self.shown }
     }
 
-    /// All that can be done of a tile.
-    fn phase(&mut self, tile: usize) {
-        let first = self.tiles[tile].events.len();
-        for block in self.tiles[tile].range.clone() {
-            match self.begun[block] {
-                0 => self.advance(block),
-                begun => self.follow(begun - 1, block),
+    /// All that can be done without what others do meanwhile, of early or other blocks that begin now, and of those that have
+    /// begun. No phase where that is nothing.
+    fn phase(&mut self, begins: Option<bool>) -> bool {
+        self.seen.clone_from(&self.begun);
+        let shown = self.shown.len();
+        self.shown.resize(shown + self.tiles.len(), 0);
+        let mut is_some = false;
+        for tile in 0..self.tiles.len() {
+            let first = self.tiles[tile].events.len();
+            for block in self.tiles[tile].blocks() {
+                match self.begun[block] {
+                    0 if begins == Some(self.early[block]) => self.advance(block),
+                    0 => {}
+                    begun => self.follow(begun - 1, block),
+                }
             }
+            let events = first..self.tiles[tile].events.len();
+            is_some |= !events.is_empty();
+            self.tiles[tile].phases.push(events);
         }
-        let events = first..self.tiles[tile].events.len();
-        self.tiles[tile].phases.push(events);
+        if !is_some {
+            self.shown.truncate(shown);
+            self.tiles.iter_mut().for_each(|tile| drop(tile.phases.pop()));
+        }
+        is_some
     }
 
     /// Begins the next stage of a block, finishes it for all blocks of the tile that have waited for that, and begins the
@@ -163,4 +177,20 @@ impl<'a> Planner<'a> {
         let event = Event { block: block as u32, rates: self.rate[block], stage: stage as u8, begins };
         self.tiles[self.tile[block]].events.push(event);
     }
+}
+
+/// By block, whether it is one of as many layers as all stages need at a seam where both tiles begin.
+fn early(graph: &[Vec<usize>], stages: usize, tiles: &[Tile]) -> Vec<bool> {
+    let (mut tile, mut begins) = (vec![0; graph.len()], vec![false; graph.len()]);
+    for (number, one) in tiles.iter().enumerate() {
+        let half = one.range.len().div_ceil(2);
+        one.blocks().enumerate().for_each(|(at, block)| (tile[block], begins[block]) = (number, at < half));
+    }
+    let meets = |block: usize| graph[block].iter().any(|&near| tile[near] != tile[block] && begins[near]);
+    let mut early: Vec<bool> = (0..graph.len()).map(|block| begins[block] && meets(block)).collect();
+    for _ in 0..stages {
+        let touches = |(block, near): (usize, &Vec<usize>)| near.iter().any(|&n| early[n] && tile[n] == tile[block]);
+        early = graph.iter().enumerate().map(touches).collect();
+    }
+    early
 }
