@@ -143,8 +143,8 @@ pub trait Lanes: Lane {
 /// What [`Lanes::load_joined`] asks for.
 #[inline(always)]
 fn assert_within<const K: usize>(first: &[F8], second: &[F8], at: usize, r: usize) {
-    let within = |run: &[F8]| at >= 1 && at < run.len() && K < run.len() - at;
-    assert!(within(first) && within(second) && (1..LANES).contains(&r), "runs to join lie beyond the numbers");
+    let behind = first.len().min(second.len()).saturating_sub(at);
+    assert!(at >= 1 && K < behind && (1..LANES).contains(&r), "runs to join lie beyond the numbers");
 }
 
 /// K numbers that lie behind each other. (`array::from_fn` and `array::map` take closures, which are not inlined.)

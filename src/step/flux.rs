@@ -68,22 +68,32 @@ pub(super) struct Traces<'a> {
 }
 
 impl<'a> Traces<'a> {
-    /// Those of `count` faces from one on, numbered 4 block + local face, with `length` numbers each; with the numbers before
-    /// and behind them.
+    /// The array of a face, numbered 4 block + local face, with `length` numbers each, and where in it those before it end.
     #[inline(always)]
-    fn around(&self, face: usize, count: usize, length: usize) -> &'a [F8] {
+    fn find(&self, face: usize, length: usize) -> (&'a [F8], usize) {
         let slot = self.slots[face / 4];
-        let store = match slot.store {
-            0 => self.own,
-            store => self.seen.get(store as usize - 1).map_or(self.shown, |seen| &seen[..]),
-        };
-        &store[(4 * slot.index as usize + face % 4) * length..][..count * length + 2]
+        let all = if slot.store == 0 { self.own } else { self.of_tiles(slot.store) };
+        (all, (4 * slot.index as usize + face % 4) * length)
+    }
+
+    /// Apart from the common case, which has to be quick.
+    #[cold]
+    fn of_tiles(&self, store: u32) -> &'a [F8] {
+        self.seen.get(store as usize - 1).map_or(self.shown, |seen| &seen[..])
+    }
+
+    /// Those of a face, with the numbers before and behind them.
+    #[inline(always)]
+    fn around(&self, face: usize, length: usize) -> &'a [F8] {
+        let (all, at) = self.find(face, length);
+        &all[at..at + length + 2]
     }
 
     /// Those of `count` faces.
     #[inline(always)]
     fn faces(&self, face: usize, count: usize, length: usize) -> &'a [F8] {
-        &self.around(face, count, length)[1..][..count * length]
+        let (all, at) = self.find(face, length);
+        &all[at + 1..at + 1 + count * length]
     }
 }
 
@@ -286,7 +296,7 @@ pub(super) fn lift(place: Place, traces: Traces, nodes: &mut Arrays, mut sums: O
         other[face] = match plan[face].side {
             Side::Aligned(there) => Beyond::Aligned(traces.faces(there, 1, length)),
             Side::Joined { first, second, by } => {
-                let [first, second] = [first, second].map(|there| traces.around(there, 1, length));
+                let [first, second] = [first, second].map(|there| traces.around(there, length));
                 Beyond::Joined { first, second, by }
             }
             Side::Gathered(entry) => {

@@ -109,7 +109,7 @@ impl<'a> Planner<'a> {
         }
         if !is_some {
             self.shown.truncate(shown);
-            self.tiles.iter_mut().for_each(|tile| drop(tile.phases.pop()));
+            self.tiles.iter_mut().for_each(|tile| tile.phases.truncate(tile.phases.len().saturating_sub(1)));
         }
         is_some
     }
