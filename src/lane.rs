@@ -130,21 +130,21 @@ pub trait Lanes: Lane {
         }
         Self::load(&all)
     }
-    /// K numbers of cells in rows that begin in other lanes: lane l of number k is lane l + r of `all[first + k]` for
-    /// l < 8 - r, then lane l + r - 8 of `all[second + k]`; r in 1..8.
+    /// K numbers of cells in rows that begin in other lanes: lane l of number k is lane l + r of `first[at + k]` for
+    /// l < 8 - r, then lane l + r - 8 of `second[at + k]`; r in 1..8.
     ///
     /// # Panics
-    /// Where one of the two runs begins before the second number of `all`, or does not end before its last one. (Both may be
-    /// read a little beyond what is wanted.)
+    /// Where `at` is the first number of the runs, or the numbers do not end before the last one of both. (Both may be read a
+    /// little beyond what is wanted.)
     #[inline(always)]
-    fn load_joined<const K: usize>(all: &[F8], first: usize, second: usize, r: usize) -> [Self; K] {
-        assert_within::<K>(all, first, second, r);
+    fn load_joined<const K: usize>(first: &[F8], second: &[F8], at: usize, r: usize) -> [Self; K] {
+        assert_within::<K>(first, second, at, r);
         let mut out = [Self::zero(); K];
         for (k, out) in out.iter_mut().enumerate() {
             let mut lanes = [0.0; LANES];
             for (lane, number) in lanes.iter_mut().enumerate() {
-                let at = lane + r;
-                *number = if at < LANES { all[first + k].0[at] } else { all[second + k].0[at - LANES] };
+                let l = lane + r;
+                *number = if l < LANES { first[at + k].0[l] } else { second[at + k].0[l - LANES] };
             }
             *out = Self::from_lanes(lanes);
         }
@@ -154,9 +154,9 @@ pub trait Lanes: Lane {
 
 /// What [`Lanes::load_joined`] asks for.
 #[inline(always)]
-fn assert_within<const K: usize>(all: &[F8], first: usize, second: usize, r: usize) {
-    let within = |start: usize| start >= 1 && start < all.len() && K < all.len() - start;
-    assert!(within(first) && within(second) && (1..LANES).contains(&r), "runs to join lie beyond the numbers");
+fn assert_within<const K: usize>(first: &[F8], second: &[F8], at: usize, r: usize) {
+    let behind = first.len().min(second.len()).saturating_sub(at);
+    assert!(at >= 1 && K < behind && (1..LANES).contains(&r), "runs to join lie beyond the numbers");
 }
 
 /// K numbers that lie behind each other. (`array::from_fn` and `array::map` take closures, which are not inlined.)
@@ -169,21 +169,27 @@ pub fn load_array<L: Lanes, const K: usize>(from: &[F8]) -> [L; K] {
     out
 }
 
-/// K numbers, for each lane from a place of its own: number k of lane l is number `first[l] + LANES k` of [`as_f64`].
+/// K numbers, for each lane from a place of its own: number k of lane l is number `first[l] + LANES k` of [`as_f64`] of
+/// `from[l]`.
 ///
 /// # Panics
 /// Where a lane would read beyond the end.
 #[inline(always)]
-pub fn load_lanes<L: Lanes, const K: usize>(from: &[F8], first: &[usize; LANES]) -> [L; K] {
-    let numbers = as_f64(from);
-    let last = numbers.len().saturating_sub((K - 1) * LANES);
-    assert!(first.iter().fold(true, |within, at| within & (*at < last)), "a lane beyond the end");
+pub fn load_lanes<L: Lanes, const K: usize>(from: &[&[F8]; LANES], first: &[usize; LANES]) -> [L; K] {
+    let mut at = [std::ptr::null(); LANES];
+    let mut within = true;
+    for lane in 0..LANES {
+        let numbers = as_f64(from[lane]);
+        within &= first[lane] < numbers.len().saturating_sub((K - 1) * LANES);
+        at[lane] = numbers.as_ptr().wrapping_add(first[lane]);
+    }
+    assert!(within, "a lane beyond the end");
     let mut out = [L::zero(); K];
     for (k, out) in out.iter_mut().enumerate() {
         let mut lanes = [0.0; LANES];
-        for (lane, first) in lanes.iter_mut().zip(first) {
+        for lane in 0..LANES {
             // SAFETY: the last number of each lane was seen to be there, and k < K.
-            *lane = unsafe { *numbers.get_unchecked(first + k * LANES) };
+            lanes[lane] = unsafe { *at[lane].add(k * LANES) };
         }
         *out = L::from_lanes(lanes);
     }
@@ -405,7 +411,7 @@ mod tests {
         #[inline(always)]
         fn run<L: Lanes>(self) -> [F8; 3] {
             let mut out = [F8::ZERO; 3];
-            store_array(L::load_joined::<3>(self.0, 5, 1, self.1), &mut out);
+            store_array(L::load_joined::<3>(&self.0[4..], self.0, 1, self.1), &mut out);
             out
         }
     }

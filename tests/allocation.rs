@@ -50,7 +50,7 @@ static ALLOCATOR: Counting = Counting;
 /// Walls, traction and velocity that depend on place and time, absorbing edges, a source and the displacement.
 const SCENE: &str = r#"
 [mesh]
-rectangle = { size = [1.0, 1.0], cells = [9, 9] }
+rectangle = { size = [1.0, 1.0], cells = [24, 24] }
 [[material]]
 law = "neo-hookean"
 young = 2e11
@@ -112,7 +112,7 @@ impl Run {
         let (work, survey) = (Work::new(&scheme, &state), Survey::default());
         let mut run = Self { scheme, state, work, next: survey.clone(), survey, dt: 0.0 };
         run.scheme.survey(&run.state, &run.work, &mut run.survey).unwrap();
-        run.dt = 0.5 * scene.settings().unwrap().courant / 9.0 / run.survey.fastest;
+        run.dt = 0.5 * scene.settings().unwrap().courant / 24.0 / run.survey.fastest;
         (0..3).for_each(|_| run.step());
         run
     }

@@ -145,15 +145,15 @@ impl Lanes for Avx2 {
         unsafe { Avx2(_mm256_setr_pd(n[0], n[1], n[2], n[3]), _mm256_setr_pd(n[4], n[5], n[6], n[7])) }
     }
     #[inline(always)]
-    fn load_joined<const K: usize>(all: &[F8], first: usize, second: usize, r: usize) -> [Avx2; K] {
-        assert_within::<K>(all, first, second, r);
-        let numbers = as_f64(all).as_ptr();
+    fn load_joined<const K: usize>(first: &[F8], second: &[F8], at: usize, r: usize) -> [Avx2; K] {
+        assert_within::<K>(first, second, at, r);
+        let (first, second) = (as_f64(first).as_ptr(), as_f64(second).as_ptr());
         let mut out = [Avx2::splat(0.0); K];
-        // SAFETY: see Avx2. Of number k are read 8 (first + k) + r and 7 more, and 8 (second + k) + r - 8 and 7 more: they
-        // lie within `all`, since there is one number at least before and behind both runs.
+        // SAFETY: see Avx2. Of number k are read 8 (at + k) + r and 7 more of one, 8 (at + k) + r - 8 and 7 more of
+        // the other: they lie within, since there is one number at least before and behind the K of both.
         unsafe {
             let masks = [_mm256_loadu_pd(SECOND.as_ptr().add(r)), _mm256_loadu_pd(SECOND.as_ptr().add(r + 4))];
-            let (one, two) = (numbers.add(LANES * first + r), numbers.add(LANES * (second - 1) + r));
+            let (one, two) = (first.add(LANES * at + r), second.add(LANES * (at - 1) + r));
             for (k, out) in out.iter_mut().enumerate() {
                 let (one, two) = (one.add(LANES * k), two.add(LANES * k));
                 let low = _mm256_blendv_pd(_mm256_loadu_pd(one), _mm256_loadu_pd(two), masks[0]);

@@ -131,15 +131,15 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
-    fn load_joined<const K: usize>(all: &[F8], first: usize, second: usize, r: usize) -> [Avx512; K] {
-        assert_within::<K>(all, first, second, r);
-        let numbers = as_f64(all).as_ptr();
+    fn load_joined<const K: usize>(first: &[F8], second: &[F8], at: usize, r: usize) -> [Avx512; K] {
+        assert_within::<K>(first, second, at, r);
+        let (first, second) = (as_f64(first).as_ptr(), as_f64(second).as_ptr());
         let mut out = [Avx512::splat(0.0); K];
         let from_second: __mmask8 = 0xff << (LANES - r);
-        // SAFETY: see Avx512. Of number k are read 8 (first + k) + r and 7 more, and 8 (second + k) + r - 8 and 7 more: they
-        // lie within `all`, since there is one number at least before and behind both runs.
+        // SAFETY: see Avx512. Of number k are read 8 (at + k) + r and 7 more of one, 8 (at + k) + r - 8 and 7 more of
+        // the other: they lie within, since there is one number at least before and behind the K of both.
         unsafe {
-            let (one, two) = (numbers.add(LANES * first + r), numbers.add(LANES * (second - 1) + r));
+            let (one, two) = (first.add(LANES * at + r), second.add(LANES * (at - 1) + r));
             for (k, out) in out.iter_mut().enumerate() {
                 let (one, two) = (_mm512_loadu_pd(one.add(LANES * k)), _mm512_loadu_pd(two.add(LANES * k)));
                 *out = Avx512(_mm512_mask_blend_pd(from_second, one, two));

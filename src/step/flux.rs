@@ -1,6 +1,7 @@
 //! Fluxes (3) of the four faces of a block, lifted: len (Flux* - own flux of the F rows).
 
 use super::balance::{FacePower, Sums};
+use super::tiles::Slot;
 use super::volume::{Arrays, width};
 use super::{Scheme, Stage};
 use crate::boundary::FacePoint;
@@ -56,23 +57,43 @@ fn turned<L: Lanes, const W: usize>(mut x: [L; W]) -> [L; W] {
 /// All traces under way.
 #[derive(Clone, Copy)]
 pub(super) struct Traces<'a> {
-    /// One number, then [slot][face][point][width], then one more.
-    pub all: &'a [F8],
+    /// Those of the tile: one number, then [slot][face][point][width], then one more. So are the others.
+    pub own: &'a [F8],
+    /// What all tiles have shown before this phase, by store.
+    pub seen: &'a [Vec<F8>],
+    /// What the tile will have shown after it.
+    pub shown: &'a [F8],
     /// The slot of each block.
-    pub slots: &'a [u32],
+    pub slots: &'a [Slot],
 }
 
 impl<'a> Traces<'a> {
-    /// Where those of a face begin, numbered 4 block + local face, with `length` numbers each.
+    /// The array of a face, numbered 4 block + local face, with `length` numbers each, and where in it those before it end.
     #[inline(always)]
-    fn face(&self, face: usize, length: usize) -> usize {
-        1 + (4 * self.slots[face / 4] as usize + face % 4) * length
+    fn find(&self, face: usize, length: usize) -> (&'a [F8], usize) {
+        let slot = self.slots[face / 4];
+        let all = if slot.store == 0 { self.own } else { self.of_tiles(slot.store) };
+        (all, (4 * slot.index as usize + face % 4) * length)
+    }
+
+    /// Apart from the common case, which has to be quick.
+    #[cold]
+    fn of_tiles(&self, store: u32) -> &'a [F8] {
+        self.seen.get(store as usize - 1).map_or(self.shown, |seen| &seen[..])
+    }
+
+    /// Those of a face, with the numbers before and behind them.
+    #[inline(always)]
+    fn around(&self, face: usize, length: usize) -> &'a [F8] {
+        let (all, at) = self.find(face, length);
+        &all[at..at + length + 2]
     }
 
     /// Those of `count` faces.
     #[inline(always)]
     fn faces(&self, face: usize, count: usize, length: usize) -> &'a [F8] {
-        &self.all[self.face(face, length)..][..count * length]
+        let (all, at) = self.find(face, length);
+        &all[at + 1..at + 1 + count * length]
     }
 }
 
@@ -93,23 +114,22 @@ impl Other for Aligned<'_> {
     }
 }
 
-/// In two runs of all traces, see [`Lanes::load_joined`].
+/// In two runs that begin with their second number, see [`Lanes::load_joined`].
 #[derive(Clone, Copy)]
 struct Joined<'a> {
-    all: &'a [F8],
-    first: usize,
-    second: usize,
+    first: &'a [F8],
+    second: &'a [F8],
     by: usize,
 }
 
 impl Other for Joined<'_> {
     #[inline(always)]
     fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
-        L::load_joined(self.all, self.first + point * W, self.second + point * W, self.by)
+        L::load_joined(self.first, self.second, 1 + point * W, self.by)
     }
 }
 
-/// In some faces, with `points` points each: all that one of them has at once.
+/// In some faces, with `points` points each.
 #[derive(Clone, Copy)]
 struct Apart<'a> {
     traces: Traces<'a>,
@@ -117,14 +137,32 @@ struct Apart<'a> {
     points: usize,
 }
 
-impl Other for Apart<'_> {
+/// In some faces: all lanes that one of them has at once.
+struct FaceByFace<'a> {
+    /// [point][width] of each source.
+    faces: [&'a [F8]; LANES],
+    from: &'a Gathered,
+    points: usize,
+}
+
+impl<'a> FaceByFace<'a> {
+    #[inline(always)]
+    fn new<const W: usize>(Apart { traces, from, points }: Apart<'a>) -> Self {
+        let mut faces = [&[][..]; LANES];
+        for (face, source) in faces.iter_mut().zip(from.sources()) {
+            *face = traces.faces(source.face as usize, 1, points * W);
+        }
+        Self { faces, from, points }
+    }
+}
+
+impl Other for FaceByFace<'_> {
     #[inline(always)]
     fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
         let mut all = [L::zero(); W];
-        for source in self.from.sources() {
+        for (source, face) in self.from.sources().iter().zip(&self.faces) {
             let at = if source.flip { self.points - 1 - point } else { point };
-            let there = &self.traces.all[self.traces.face(source.face as usize, self.points * W) + at * W..][..W];
-            for (all, there) in all.iter_mut().zip(there) {
+            for (all, there) in all.iter_mut().zip(&face[at * W..][..W]) {
                 *all = all.pick(there, &self.from.lane, source.lanes);
             }
         }
@@ -132,10 +170,11 @@ impl Other for Apart<'_> {
     }
 }
 
-/// The same lane by lane, see [`load_lanes`].
+/// In some faces: lane by lane, see [`load_lanes`].
 struct LaneByLane<'a> {
-    all: &'a [F8],
-    /// Where the first number of each lane is.
+    /// The face of each lane.
+    faces: [&'a [F8]; LANES],
+    /// Where its first number is.
     first: [usize; LANES],
     /// How far the next point is from there.
     step: [isize; LANES],
@@ -143,21 +182,21 @@ struct LaneByLane<'a> {
 
 impl<'a> LaneByLane<'a> {
     #[inline(always)]
-    fn new<const W: usize>(apart: &Apart<'a>) -> Self {
-        let Apart { traces, from, points } = *apart;
+    fn new<const W: usize>(Apart { traces, from, points }: Apart<'a>) -> Self {
         let stride = (W * LANES) as isize;
-        let (mut first, mut step) = ([0; LANES], [stride; LANES]);
+        let (mut faces, mut first, mut step) = ([&[][..]; LANES], [0; LANES], [stride; LANES]);
         for source in from.sources() {
+            let face = traces.faces(source.face as usize, 1, points * W);
             let point = if source.flip { points - 1 } else { 0 };
-            let at = (traces.face(source.face as usize, points * W) + point * W) * LANES;
             for lane in 0..LANES {
                 if source.lanes >> lane & 1 == 1 {
-                    first[lane] = at + usize::from(from.lane[lane]);
+                    faces[lane] = face;
+                    first[lane] = point * W * LANES + usize::from(from.lane[lane]);
                     step[lane] = if source.flip { -stride } else { stride };
                 }
             }
         }
-        Self { all: traces.all, first, step }
+        Self { faces, first, step }
     }
 }
 
@@ -168,7 +207,7 @@ impl Other for LaneByLane<'_> {
         for lane in 0..LANES {
             at[lane] = self.first[lane].wrapping_add_signed(point as isize * self.step[lane]);
         }
-        load_lanes(self.all, &at)
+        load_lanes(&self.faces, &at)
     }
 }
 
@@ -184,10 +223,10 @@ impl Beyond<'_> {
     /// The numbers of a point, on a path that need not be fast.
     #[inline(always)]
     fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
-        match self {
+        match *self {
             Beyond::Aligned(other) => other.load(point),
             Beyond::Joined(other) => other.load(point),
-            Beyond::Apart(other) => other.load(point),
+            Beyond::Apart(other) => FaceByFace::new::<W>(other).load(point),
         }
     }
 
@@ -196,14 +235,14 @@ impl Beyond<'_> {
         let at = |point: usize| point * width + k;
         match *self {
             Beyond::Aligned(Aligned(traces)) => traces[at(point)].0[lane],
-            Beyond::Joined(Joined { all, first, second, by }) => {
-                let (first, lane) = if lane + by < LANES { (first, lane + by) } else { (second, lane + by - LANES) };
-                all[first + at(point)].0[lane]
+            Beyond::Joined(Joined { first, second, by }) => {
+                let (run, lane) = if lane + by < LANES { (first, lane + by) } else { (second, lane + by - LANES) };
+                run[1 + at(point)].0[lane]
             }
             Beyond::Apart(Apart { traces, from, points }) => {
                 let there = from.across(lane);
                 let point = if there.flip { points - 1 - point } else { point };
-                traces.all[traces.face(there.face, points * width) + at(point)].0[there.lane]
+                traces.faces(there.face, 1, points * width)[at(point)].0[there.lane]
             }
         }
     }
@@ -235,9 +274,11 @@ impl Work for Faces<'_> {
                 match self.other[face] {
                     Beyond::Aligned(other) => self.of_face::<L, _, _, W>(face, other, riemann),
                     Beyond::Joined(other) => self.of_face::<L, _, _, W>(face, other, riemann),
-                    Beyond::Apart(other) if L::PICKS => self.of_face::<L, _, _, W>(face, other, riemann),
+                    Beyond::Apart(other) if L::PICKS => {
+                        self.of_face::<L, _, _, W>(face, FaceByFace::new::<W>(other), riemann);
+                    }
                     Beyond::Apart(other) => {
-                        self.of_face::<L, _, _, W>(face, LaneByLane::new::<W>(&other), riemann);
+                        self.of_face::<L, _, _, W>(face, LaneByLane::new::<W>(other), riemann);
                     }
                 }
             }
@@ -342,8 +383,8 @@ pub(super) fn lift(place: Place, traces: Traces, nodes: &mut Arrays, mut sums: O
         *other = match plan.side {
             Side::Aligned(there) => Beyond::Aligned(Aligned(traces.faces(there, 1, length))),
             Side::Joined { first, second, by } => {
-                let [first, second] = [first, second].map(|there| traces.face(there, length));
-                Beyond::Joined(Joined { all: traces.all, first, second, by })
+                let [first, second] = [first, second].map(|there| traces.around(there, length));
+                Beyond::Joined(Joined { first, second, by })
             }
             Side::Gathered(entry) => Beyond::Apart(Apart { traces, from: &blocks.gathered[entry], points: m }),
         };

@@ -1,8 +1,8 @@
-//! The stages of a step on all blocks, by the plans of [`tiles`].
+//! The stages of a step on all blocks, by the plan of [`tiles`].
 
 use super::balance::Sums;
 use super::survey::Worst;
-use super::tiles::{self, Event, Plan};
+use super::tiles::{self, Event, Plan, Slot};
 use super::{Scheme, Scratch, Stage, Survey, Work, begin, finish, flux, volume, with_scratch};
 use crate::lane::{self, F8};
 use crate::operators::Operators;
@@ -10,56 +10,74 @@ use crate::state::State;
 use std::sync::Mutex;
 
 /// A tile of blocks with its memory.
-pub(super) struct Tile {
-    plan: Plan,
+struct Tile {
+    plan: tiles::Tile,
     /// dU/dt: [slot][stage][component][node].
     rates: Vec<F8>,
     /// See [`flux::Traces`], with [`volume::width`] numbers a point.
     traces: Vec<F8>,
-    /// The slot of the traces of each block: [stage][block].
-    slots: Vec<u32>,
     /// The worst of its blocks after the last step.
     worst: Worst,
-    /// Whether the unknowns come from memory, see [`FAR`].
-    far: bool,
 }
 
 /// The tiles of a step.
-pub(super) struct Tiles(Vec<Tile>);
+pub(super) struct Tiles {
+    tiles: Vec<Tile>,
+    phases: usize,
+    /// The traces that each tile shows: [phase][tile].
+    shown: Vec<Vec<F8>>,
+    /// Slots of each of them.
+    shown_slots: Vec<usize>,
+    /// The slot of the traces of each block: [stage][block].
+    slots: Vec<Slot>,
+    /// Whether the unknowns come from memory, see [`FAR`].
+    far: bool,
+}
 
 impl Tiles {
     /// For states with `stride` numbers a block, on the current number of threads.
     pub fn new(scheme: &Scheme, stride: usize) -> Self {
         let (stages, blocks) = (scheme.stages(), &scheme.operators.blocks);
-        let graph = tiles::graph(blocks);
-        let plans = tiles::plans(&graph, stages, rayon::current_num_threads().max(1));
-        let numbers = scheme.block_traces(false);
-        let tile = |plan: Plan| Tile {
-            rates: vec![F8::ZERO; plan.rates * stages * stride],
-            traces: vec![F8::ZERO; plan.traces * numbers + 2],
-            slots: vec![0; stages * blocks.len()],
-            worst: Worst::NONE,
-            far: blocks.len() * stride * size_of::<F8>() > FAR,
-            plan,
+        let plan = Plan::new(&tiles::graph(blocks), stages, rayon::current_num_threads().max(1));
+        let phases = plan.phases();
+        let tile = |plan: tiles::Tile| {
+            let rates = vec![F8::ZERO; plan.rates * stages * stride];
+            Tile { rates, traces: vec![], worst: Worst::NONE, plan }
         };
-        Self(plans.into_iter().map(tile).collect())
+        let mut out = Self {
+            tiles: plan.tiles.into_iter().map(tile).collect(),
+            phases,
+            shown: vec![vec![]; plan.shown.len()],
+            shown_slots: plan.shown,
+            slots: plan.slots,
+            far: blocks.len() * stride * size_of::<F8>() > FAR,
+        };
+        out.make_room(scheme.block_traces(false));
+        out
     }
 
     /// Makes room for the numbers that the balance of energy needs.
     pub fn widen(&mut self, scheme: &Scheme) {
-        for tile in &mut self.0 {
-            tile.traces.resize(tile.plan.traces * scheme.block_traces(true) + 2, F8::ZERO);
+        self.make_room(scheme.block_traces(true));
+    }
+
+    /// Makes room for so many numbers of the traces of a block.
+    fn make_room(&mut self, numbers: usize) {
+        let own = self.tiles.iter_mut().map(|tile| (&mut tile.traces, tile.plan.traces));
+        for (traces, slots) in own.chain(self.shown.iter_mut().zip(self.shown_slots.iter().copied())) {
+            traces.resize(slots * numbers + 2, F8::ZERO);
         }
     }
 
     /// The worst of all blocks after the last step.
     pub fn worst(&self) -> Worst {
-        self.0.iter().fold(Worst::NONE, |worst, tile| worst.and(tile.worst))
+        self.tiles.iter().fold(Worst::NONE, |worst, tile| worst.and(tile.worst))
     }
 
     /// Numbers of eight lanes held.
     pub fn numbers(&self) -> usize {
-        self.0.iter().map(|tile| tile.rates.len() + tile.traces.len()).sum()
+        let own = self.tiles.iter().map(|tile| tile.rates.len() + tile.traces.len());
+        own.chain(self.shown.iter().map(Vec::len)).sum()
     }
 }
 
@@ -70,47 +88,44 @@ const FAR: usize = 4 << 20;
 /// So many blocks ahead memory is asked for.
 const AHEAD: usize = 2;
 
-/// A tile under way.
+/// A phase of a tile under way.
 struct Pass<'a> {
-    scheme: &'a Scheme,
-    stages: &'a [Stage<'a>],
-    state: &'a State,
-    survey: &'a Survey,
+    step: Step<'a>,
     tile: &'a mut Tile,
+    /// The traces that it shows after this phase.
+    shown: &'a mut [F8],
     /// What the step makes of the tile.
     out: Out<'a>,
-    /// That of the blocks around it, which is another's.
-    others: Sums,
     scratch: &'a mut Scratch,
 }
 
 impl Pass<'_> {
     fn run(mut self) {
-        self.tile.worst = Worst::NONE;
-        for number in 0..self.tile.plan.events.len() {
+        if self.step.phase == 0 {
+            self.tile.worst = Worst::NONE;
+        }
+        for number in self.tile.plan.phases[self.step.phase].clone() {
             let event = self.tile.plan.events[number];
-            match event.traces {
-                Some(slot) => self.begin(&event, slot as usize),
-                None => self.finish(&event),
-            }
+            if event.begins { self.begin(&event) } else { self.finish(&event) }
         }
     }
 
-    fn begin(&mut self, event: &Event, slot: usize) {
-        let Self { scheme, stages, state, survey, tile, .. } = self;
+    fn begin(&mut self, event: &Event) {
+        let Self { step, tile, shown, out, scratch } = self;
+        let Step { scheme, stages, state, survey, slots, far, .. } = *step;
         let (block, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
         let blocks = scheme.operators.blocks.len();
-        if stage.number == 0 && block + AHEAD < blocks {
-            scheme.ask_for(state, block + AHEAD);
-            if tile.far {
-                scheme.ask_for_more(survey, block + AHEAD);
+        if let (0, Some(later)) = (stage.number, tile.plan.after(block, AHEAD)) {
+            scheme.ask_for(state, later);
+            if far {
+                scheme.ask_for_more(survey, later);
             }
         }
-        tile.slots[stage.number * blocks + block] = slot as u32;
         let stride = state.components * scheme.operators.nodes();
         let rates = &mut tile.rates[event.rates as usize * stages.len() * stride..][..stages.len() * stride];
         let (before, now) = rates.split_at_mut(stage.number * stride);
-        let numbers = scheme.block_traces(self.out.balance.is_some());
+        let (slot, numbers) = (slots[stage.number * blocks + block], scheme.block_traces(out.balance.is_some()));
+        let traces = if slot.store == 0 { &mut tile.traces[..] } else { &mut shown[..] };
         let work = begin::Block {
             scheme,
             stage,
@@ -118,33 +133,31 @@ impl Pass<'_> {
             state,
             before,
             rate: &mut now[..stride],
-            traces: &mut tile.traces[1 + slot * numbers..][..numbers],
-            sums: sums_of(&mut self.out.balance, &tile.plan, &mut self.others, block),
-            scratch: self.scratch,
+            traces: &mut traces[1 + slot.index as usize * numbers..][..numbers],
+            sums: out.balance.as_mut().and_then(|sums| sums.get_mut(block - out.first)),
+            scratch,
         };
         work.run();
     }
 
     fn finish(&mut self, event: &Event) {
-        let Self { scheme, stages, state, survey, tile, out, .. } = self;
+        let Self { step, tile, shown, out, scratch } = self;
+        let Step { scheme, stages, state, survey, slots, seen, far, .. } = *step;
         let (block, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
-        let blocks = scheme.operators.blocks.len();
+        let (blocks, at) = (scheme.operators.blocks.len(), block - out.first);
         let stride = state.components * scheme.operators.nodes();
         let rates = &mut tile.rates[event.rates as usize * stages.len() * stride..][..stages.len() * stride];
         let (before, now) = rates.split_at_mut(stage.number * stride);
-        if stage.number + 1 == stages.len()
-            && let Some(curl_free) = &scheme.operators.curl_free
+        let is_last = stage.number + 1 == stages.len();
+        if let (true, Some(later)) = (far && is_last, tile.plan.after(block, AHEAD)) {
+            out.ask_for(later - out.first, stride);
+        }
+        if let (true, Some(later), Some(curl_free)) = (is_last, tile.plan.after(block, 1), &scheme.operators.curl_free)
         {
-            curl_free.ask_for(block + 1);
+            curl_free.ask_for(later);
         }
-        // Blocks around the tile have no last stage.
-        if tile.far && stage.number + 1 == stages.len() {
-            out.ask_for(block - tile.plan.range.start + AHEAD, stride);
-        }
-        let new = (stage.number + 1 == stages.len()).then(|| {
-            let at = block - tile.plan.range.start;
-            let history = scheme.histories.range(block);
-            let start = scheme.histories.range(tile.plan.range.start).start;
+        let new = is_last.then(|| {
+            let (history, start) = (scheme.histories.range(block), scheme.histories.range(out.first).start);
             finish::New {
                 u: &mut out.u[at * stride..][..stride],
                 internal: &mut out.internal[history.start - start..history.end - start],
@@ -152,6 +165,7 @@ impl Pass<'_> {
                 worst: &mut tile.worst,
             }
         });
+        let slots = &slots[stage.number * blocks..][..blocks];
         let work = finish::Block {
             scheme,
             stage,
@@ -160,28 +174,19 @@ impl Pass<'_> {
             survey,
             before,
             rate: &mut now[..stride],
-            traces: flux::Traces { all: &tile.traces, slots: &tile.slots[stage.number * blocks..][..blocks] },
+            traces: flux::Traces { own: &tile.traces, seen, shown, slots },
             new,
-            sums: sums_of(&mut out.balance, &tile.plan, &mut self.others, block),
-            scratch: self.scratch,
+            sums: out.balance.as_mut().and_then(|sums| sums.get_mut(at)),
+            scratch,
         };
         work.run();
     }
 }
 
-/// Where a block's balance is kept; none where it is off.
-fn sums_of<'a>(
-    balance: &'a mut Option<&mut [Sums]>,
-    plan: &Plan,
-    others: &'a mut Sums,
-    block: usize,
-) -> Option<&'a mut Sums> {
-    let own = balance.as_mut()?;
-    if plan.range.contains(&block) { own.get_mut(block - plan.range.start) } else { Some(others) }
-}
-
 /// What a step makes of the blocks of some tiles that follow each other.
 struct Out<'a> {
+    /// The first of them.
+    first: usize,
     /// New unknowns.
     u: &'a mut [F8],
     /// New internal variables.
@@ -202,43 +207,56 @@ impl<'a> Out<'a> {
         }
     }
 
+    /// The same for a shorter time.
+    fn again(&mut self) -> Out<'_> {
+        let balance = self.balance.as_deref_mut();
+        Out { first: self.first, u: self.u, internal: self.internal, speed: self.speed, balance }
+    }
+
     /// Those of the first `blocks`, with so many internal variables, and the rest.
     fn split(self, blocks: usize, stride: usize, internal: usize) -> (Self, Self) {
+        let (first, second) = (self.first, self.first + blocks);
         let (u, u2) = self.u.split_at_mut(blocks * stride);
         let (internal, internal2) = self.internal.split_at_mut(internal);
         let (speed, speed2) = self.speed.split_at_mut(blocks);
         let (balance, balance2) = self.balance.map(|sums| sums.split_at_mut(blocks)).unzip();
-        (Out { u, internal, speed, balance }, Out { u: u2, internal: internal2, speed: speed2, balance: balance2 })
+        let left = Out { first, u, internal, speed, balance };
+        (left, Out { first: second, u: u2, internal: internal2, speed: speed2, balance: balance2 })
     }
 }
 
-/// A step under way.
+/// A phase of a step under way.
 #[derive(Clone, Copy)]
 struct Step<'a> {
     scheme: &'a Scheme,
     stages: &'a [Stage<'a>],
     state: &'a State,
     survey: &'a Survey,
+    slots: &'a [Slot],
+    far: bool,
     scratch: &'a [Mutex<Scratch>],
+    phase: usize,
+    /// The traces that tiles have shown in the phases before.
+    seen: &'a [Vec<F8>],
 }
 
 impl Step<'_> {
     /// Halves until a tile is left: nothing may be allocated.
-    fn run(self, tiles: &mut [Tile], out: Out) {
-        let Self { scheme, stages, state, survey, scratch } = self;
-        match tiles {
-            [] => {}
-            [tile] => with_scratch(scratch, |scratch| {
-                Pass { scheme, stages, state, survey, tile, out, others: Sums::default(), scratch }.run();
+    fn run(self, tiles: &mut [Tile], shown: &mut [Vec<F8>], out: Out) {
+        match (tiles, shown) {
+            ([tile], [shown]) => with_scratch(self.scratch, |scratch| {
+                Pass { step: self, tile, shown, out, scratch }.run();
             }),
-            _ => {
-                let (left, right) = tiles.split_at_mut(tiles.len() / 2);
+            (tiles, shown) if tiles.len() > 1 => {
+                let half = tiles.len() / 2;
+                let ((left, right), (shown, shown2)) = (tiles.split_at_mut(half), shown.split_at_mut(half));
                 let (start, middle) = (left[0].plan.range.start, right[0].plan.range.start);
-                let first = |block| scheme.histories.range(block).start;
-                let stride = state.components * scheme.operators.nodes();
+                let first = |block| self.scheme.histories.range(block).start;
+                let stride = self.state.components * self.scheme.operators.nodes();
                 let (one, two) = out.split(middle - start, stride, first(middle) - first(start));
-                rayon::join(|| self.run(left, one), || self.run(right, two));
+                rayon::join(|| self.run(left, shown, one), || self.run(right, shown2, two));
             }
+            _ => {}
         }
     }
 }
@@ -246,9 +264,15 @@ impl Step<'_> {
 impl Scheme {
     /// All stages of a step.
     pub(super) fn run_stages(&self, stages: &[Stage], state: &State, survey: &Survey, work: &mut Work) {
-        let Work { tiles: Tiles(tiles), next, speed, balance, scratch, .. } = work;
-        let out = Out { u: &mut next.u, internal: &mut next.internal, speed, balance: balance.as_deref_mut() };
-        Step { scheme: self, stages, state, survey, scratch }.run(tiles, out);
+        let Work { tiles: Tiles { tiles, phases, shown, slots, far, .. }, next, speed, balance, scratch, .. } = work;
+        let (u, internal, balance) = (&mut next.u[..], &mut next.internal[..], balance.as_deref_mut());
+        let mut out = Out { first: 0, u, internal, speed, balance };
+        let count = tiles.len();
+        for phase in 0..*phases {
+            let (seen, shown) = shown.split_at_mut(phase * count);
+            let step = Step { scheme: self, stages, state, survey, slots, far: *far, scratch, phase, seen };
+            step.run(tiles, &mut shown[..count], out.again());
+        }
     }
 
     /// Asks for what the stages of a block will read.

@@ -1,0 +1,138 @@
+//! In which order the blocks of a step are begun and finished, and where their rates and traces lie meanwhile.
+//!
+//! A step is one pass over memory: `finish` follows `begin` as closely as neighbours allow, each stage follows the one
+//! before it, and rates and traces live in a few slots that are used again as soon as nobody needs what they hold, so
+//! that they stay in the cache. With several threads each has a tile of blocks, and first does all of it that needs nothing
+//! from beyond it: a layer of blocks less with each stage. Then, in a phase for each stage, they show each other the traces
+//! at the borders of the tiles, and each goes on as far as these reach. (Twice so, at the seams where two tiles begin and at
+//! those where they end: what waits at them would leave the cache meanwhile.) Nothing is done twice, nothing but these traces goes
+//! from one processor to another, and the bits do not depend on it.
+
+mod planner;
+
+use super::Stage;
+use crate::operators::{Blocks, Neighbour};
+use planner::Planner;
+use std::ops::Range;
+
+/// A place for the traces of a block in one stage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Slot {
+    /// 0: that of the tile, for none but itself; 1 + phase x tiles + tile: what the tile shows from that phase on.
+    pub store: u32,
+    /// The place in it.
+    pub index: u32,
+}
+
+/// What is done next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Event {
+    /// The block.
+    pub block: u32,
+    /// The slot of its rates.
+    pub rates: u32,
+    /// The stage.
+    pub stage: u8,
+    /// Whether it begins; else it finishes.
+    pub begins: bool,
+}
+
+/// What one thread does.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Tile {
+    /// In their order.
+    pub events: Vec<Event>,
+    /// Which of them are done in each phase.
+    pub phases: Vec<Range<usize>>,
+    /// Slots of the rates of a block in all stages.
+    pub rates: usize,
+    /// Slots of the traces of a block in one stage that no other tile reads.
+    pub traces: usize,
+    /// Its blocks.
+    pub range: Range<usize>,
+    /// Whether they are begun from the last to the first: tiles side by side begin, or end, where they touch each other.
+    pub falls: bool,
+}
+
+impl Tile {
+    /// Its blocks in the order in which they are begun.
+    fn blocks(&self) -> impl Iterator<Item = usize> + use<> {
+        let (Range { start, end }, falls) = (self.range.clone(), self.falls);
+        self.range.clone().map(move |block| if falls { start + end - 1 - block } else { block })
+    }
+
+    /// The block that is begun so many after another; none where that is not in the tile.
+    #[inline]
+    pub fn after(&self, block: usize, count: usize) -> Option<usize> {
+        let after = if self.falls { block.checked_sub(count)? } else { block + count };
+        self.range.contains(&after).then_some(after)
+    }
+}
+
+/// The events of a step.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Plan {
+    /// One after the other to the blocks' end.
+    pub tiles: Vec<Tile>,
+    /// The slots of the traces of each block: [stage][block].
+    pub slots: Vec<Slot>,
+    /// Slots of the traces that each tile shows: [phase][tile].
+    pub shown: Vec<usize>,
+}
+
+/// Events in the time of which threads meet.
+const MEETING: usize = 16;
+
+impl Plan {
+    /// A plan for as many tiles of equal size, up to `threads`, as make the longest way through the step shorter by a
+    /// quarter at least: threads that wait for each other are other people's time.
+    pub fn new(graph: &[Vec<usize>], stages: usize, threads: usize) -> Self {
+        let mut best = Planner::new(graph, stages, 1).plan();
+        let mut tiles = threads;
+        while tiles > 1 {
+            let found = Planner::new(graph, stages, tiles).plan();
+            if 4 * found.longest() < 3 * best.longest() {
+                best = found;
+            }
+            tiles /= 2;
+        }
+        best
+    }
+
+    /// The number of phases.
+    pub fn phases(&self) -> usize {
+        self.tiles.first().map_or(0, |tile| tile.phases.len())
+    }
+
+    /// Events that follow each other.
+    fn longest(&self) -> usize {
+        let longest = |phase: usize| self.tiles.iter().map(|tile| tile.phases[phase].len()).max().unwrap_or(0);
+        (0..self.phases()).map(|phase| longest(phase) + MEETING).sum()
+    }
+}
+
+/// For each block the blocks that touch it, ascending, itself among them.
+pub fn graph(blocks: &Blocks) -> Vec<Vec<usize>> {
+    let around = |(block, neighbours): (usize, &[[Neighbour; 8]; 4])| {
+        let linked = neighbours.iter().flatten().filter_map(|neighbour| match neighbour {
+            Neighbour::Cell(across) | Neighbour::Interface(across, _) => Some(across.face / 4),
+            Neighbour::Boundary(_) | Neighbour::Padding => None,
+        });
+        let mut all: Vec<usize> = linked.chain([block]).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    };
+    blocks.neighbours.iter().enumerate().map(around).collect()
+}
+
+/// Time nodes of the stages of a step on the stack: at most so many stages.
+pub const STAGES: usize = 12;
+
+/// The stages 0 to `STAGES` of a step, each with its one time node.
+pub fn stages<'a>(times: &'a [[crate::boundary::TimeNode; 1]; STAGES], dt: f64) -> [Stage<'a>; STAGES] {
+    std::array::from_fn(|number| Stage { number, times: &times[number], dt })
+}
+
+#[cfg(test)]
+mod tests;
