@@ -94,9 +94,10 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
                 let Arrays { start, shifted, rates: [before, _], q, .. } = arrays;
                 let base = if shifted.is_empty() { &start[..6 * np] } else { &shifted[..6 * np] };
                 self.row(&sweep.rates[s * sweep.from..(s + 1) * sweep.from], &mut row);
+                let rows = &row[..sweep.from];
                 match constant {
-                    Some(metric) => self.sample::<L>(base, before, &row[..sweep.from], Turned(metric), q),
-                    None => self.sample::<L>(base, before, &row[..sweep.from], Plain, q),
+                    Some(metric) => self.sample::<L>(base, before, rows, Turned(metric), q),
+                    None => self.sample::<L>(base, before, rows, Plain, q),
                 }
                 if self.matrices.is_overdetermined() {
                     self.fit(arrays);
@@ -108,7 +109,12 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
             let [before, now] = &mut arrays.rates;
             std::mem::swap(before, now);
         }
-        self.average::<L>(arrays);
+        // Degree 1 by itself: all loops are unrolled.
+        let last = &self.sweeps.last;
+        match (np, last.from, last.to) {
+            (4, 1, 2) => self.average::<L>(arrays, 4, [1, 2]),
+            (np, from, to) => self.average::<L>(arrays, np, [from, to]),
+        }
     }
 
     /// Q <- G2P P2G Q.
@@ -159,6 +165,16 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
     /// more registers than there are.
     #[inline(always)]
     fn sample<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], turn: impl Turn<L>, q: &mut [F8]) {
+        // Four points of the first sweep, as at degree 1, by themselves: all loops are unrolled.
+        match (base.len(), row) {
+            (24, []) => self.sample_of::<L>(&base[..24], before, &[], turn, q),
+            _ => self.sample_of::<L>(base, before, row, turn, q),
+        }
+    }
+
+    /// [`Predictor::sample`] for lengths that may be constants.
+    #[inline(always)]
+    fn sample_of<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], turn: impl Turn<L>, q: &mut [F8]) {
         let (base, before) = (base.as_chunks::<6>().0, before.as_chunks::<6>().0);
         let q = &mut q.as_chunks_mut::<6>().0[..base.len()];
         let twins = if M::INTERNAL.is_empty() { base.len() / 2 * 2 } else { 0 };
@@ -184,10 +200,10 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
     }
 
-    /// Time averages of F, v and P = P(F) over the time nodes. That of u is linear in the rates.
+    /// Time averages of F, v and P = P(F) over the time nodes, `to`, from `from` rates. That of u is linear in the rates.
     #[inline(always)]
-    fn average<L: Lanes>(&self, arrays: &mut Arrays) {
-        let (np, sweeps, last) = (self.matrices.points(), self.sweeps, &self.sweeps.last);
+    fn average<L: Lanes>(&self, arrays: &mut Arrays, np: usize, [from, to]: [usize; 2]) {
+        let (sweeps, last) = (self.sweeps, &self.sweeps.last);
         let inverse_density = L::splat(1.0 / self.law.density());
         self.shift::<L>(arrays, &sweeps.mean_sources);
         let Arrays { start, shifted, rates: [before, _], mean, mean_stress, .. } = arrays;
@@ -196,22 +212,22 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         let (start, base) = (&start[..np], &base[..np]);
         let (mut mean_row, mut rows) = (Row::default(), [Row::default(); 8]);
         self.row(&sweeps.mean_rates, &mut mean_row);
-        for (s, row) in rows.iter_mut().enumerate().take(last.to) {
-            self.row(&last.rates[s * last.from..(s + 1) * last.from], row);
+        for (s, row) in rows.iter_mut().enumerate().take(to) {
+            self.row(&last.rates[s * from..(s + 1) * from], row);
         }
         for (p, mean) in mean.as_chunks_mut::<6>().0[..np].iter_mut().enumerate() {
-            let u = state::<L, 0, 6>(base, before, &mean_row[..last.from], p);
+            let u = state::<L, 0, 6>(base, before, &mean_row[..from], p);
             store_array([u[0], u[1], u[2], u[3], u[4] * inverse_density, u[5] * inverse_density], mean);
         }
         // Two points at a time as in `sample`. Sources do not act on F: from U^n itself.
         let mean_stress = &mut mean_stress.as_chunks_mut::<4>().0[..np];
-        let (rows, twins) = (&rows[..last.to], if M::INTERNAL.is_empty() { np / 2 * 2 } else { 0 });
+        let (rows, twins) = (&rows[..to], if M::INTERNAL.is_empty() { np / 2 * 2 } else { 0 });
         let (pairs, rest) = mean_stress.split_at_mut(twins);
         for (pair, mean_stress) in pairs.as_chunks_mut::<2>().0.iter_mut().enumerate() {
             let p = 2 * pair;
             let mut sum = [Twin::<L>::zero(); 4];
             for (row, weight) in rows.iter().zip(self.weights) {
-                let row = &row[..last.from];
+                let row = &row[..from];
                 let f =
                     lane::twins(state::<L, 0, 4>(start, before, row, p), state::<L, 0, 4>(start, before, row, p + 1));
                 add(*weight, self.law.stress(f, &mut []), &mut sum);
@@ -223,7 +239,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         for (k, mean_stress) in rest.iter_mut().enumerate() {
             let (p, mut sum) = (twins + k, [L::zero(); 4]);
             for (row, weight) in rows.iter().zip(self.weights) {
-                let f = state::<L, 0, 4>(start, before, &row[..last.from], p);
+                let f = state::<L, 0, 4>(start, before, &row[..from], p);
                 let mut internal = recall::<L, M>(self.law, self.internal, p);
                 add(*weight, self.law.stress(f, &mut internal[..M::INTERNAL.len()]), &mut sum);
             }
