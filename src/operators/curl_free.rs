@@ -12,6 +12,10 @@ use rayon::prelude::*;
 /// with ranks 5, 10, 17 of 8, 18, 32 on affine cells and 6, 12, 20 on others (N = 1, 2, 3).
 const RANK_TOLERANCE: f64 = 1e-9;
 
+/// Numbers of a block up to which the processor finds the way to the next by itself: asking for the 55 of S2 costs 4 %, for
+/// the 153 of S3 and the 351 of S4 it gains 3 %.
+const FEW: usize = 128;
+
 /// C of all blocks.
 pub type CurlPool = Pool<Matrix<f64>, Matrix<F8>>;
 
@@ -112,7 +116,9 @@ impl CurlFree {
     /// Asks for what the projection of a block reads, where that is its own.
     #[inline]
     pub fn ask_for(&self, block: usize) {
-        if let Some(&Share::Own(k)) = self.pool.share.get(block) {
+        if let Some(&Share::Own(k)) = self.pool.share.get(block)
+            && self.pool.own[k].len() > FEW
+        {
             prefetch(&self.pool.own[k]);
         }
     }

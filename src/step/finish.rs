@@ -55,7 +55,7 @@ impl Block<'_> {
         let (kernel, operators) = (self.scheme.kernel, &self.scheme.operators);
         let mut clock = self.scratch.phases.clock();
         let place = flux::Place { scheme: self.scheme, stage: self.stage, block: self.block };
-        flux::lift(place, self.traces, &mut self.scratch.nodes, self.sums.as_deref_mut());
+        flux::lift(place, &self.traces, &mut self.scratch.nodes, self.sums.as_deref_mut());
         let (line, metric, lift) = (&operators.line, place.metric(), &self.scratch.nodes.lift);
         with_nodes!(line.m, M => kernel.run(Lift::<'_, M> { line, metric, lift, rate: self.rate }));
         self.scratch.phases.book(Phase::Flux, &mut clock);

@@ -76,8 +76,7 @@ impl<'a> Traces<'a> {
         (all, (4 * slot.index as usize + face % 4) * length)
     }
 
-    /// Apart from the common case, which has to be quick.
-    #[cold]
+    #[inline(always)]
     fn of_tiles(&self, store: u32) -> &'a [F8] {
         self.seen.get(store as usize - 1).map_or(self.shown, |seen| &seen[..])
     }
@@ -129,39 +128,21 @@ impl Other for Joined<'_> {
     }
 }
 
-/// In some faces, with `points` points each.
+/// In some faces, with `points` points each: all lanes that one of them has at once.
 #[derive(Clone, Copy)]
 struct Apart<'a> {
-    traces: Traces<'a>,
+    traces: &'a Traces<'a>,
     from: &'a Gathered,
     points: usize,
 }
 
-/// In some faces: all lanes that one of them has at once.
-struct FaceByFace<'a> {
-    /// [point][width] of each source.
-    faces: [&'a [F8]; LANES],
-    from: &'a Gathered,
-    points: usize,
-}
-
-impl<'a> FaceByFace<'a> {
-    #[inline(always)]
-    fn new<const W: usize>(Apart { traces, from, points }: Apart<'a>) -> Self {
-        let mut faces = [&[][..]; LANES];
-        for (face, source) in faces.iter_mut().zip(from.sources()) {
-            *face = traces.faces(source.face as usize, 1, points * W);
-        }
-        Self { faces, from, points }
-    }
-}
-
-impl Other for FaceByFace<'_> {
+impl Other for Apart<'_> {
     #[inline(always)]
     fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
         let mut all = [L::zero(); W];
-        for (source, face) in self.from.sources().iter().zip(&self.faces) {
+        for source in self.from.sources() {
             let at = if source.flip { self.points - 1 - point } else { point };
+            let face = self.traces.faces(source.face as usize, 1, self.points * W);
             for (all, there) in all.iter_mut().zip(&face[at * W..][..W]) {
                 *all = all.pick(there, &self.from.lane, source.lanes);
             }
@@ -226,7 +207,7 @@ impl Beyond<'_> {
         match *self {
             Beyond::Aligned(other) => other.load(point),
             Beyond::Joined(other) => other.load(point),
-            Beyond::Apart(other) => FaceByFace::new::<W>(other).load(point),
+            Beyond::Apart(other) => other.load(point),
         }
     }
 
@@ -255,7 +236,7 @@ struct Faces<'a> {
     /// Own traces, [face][point][width].
     own: &'a [F8],
     /// The other side's, by face, with its own normal.
-    other: [Beyond<'a>; 4],
+    other: &'a [Beyond<'a>; 4],
     metric: &'a Metric<F8>,
     /// Points of a face.
     points: usize,
@@ -274,9 +255,7 @@ impl Work for Faces<'_> {
                 match self.other[face] {
                     Beyond::Aligned(other) => self.of_face::<L, _, _, W>(face, other, riemann),
                     Beyond::Joined(other) => self.of_face::<L, _, _, W>(face, other, riemann),
-                    Beyond::Apart(other) if L::PICKS => {
-                        self.of_face::<L, _, _, W>(face, FaceByFace::new::<W>(other), riemann);
-                    }
+                    Beyond::Apart(other) if L::PICKS => self.of_face::<L, _, _, W>(face, other, riemann),
                     Beyond::Apart(other) => {
                         self.of_face::<L, _, _, W>(face, LaneByLane::new::<W>(other), riemann);
                     }
@@ -317,7 +296,7 @@ struct Sides<'a> {
     face: usize,
     own: &'a [F8],
     /// With its own normal; lanes at a boundary see themselves or what they must not use.
-    other: Beyond<'a>,
+    other: &'a Beyond<'a>,
 }
 
 /// What a face adds to the balance of the block. The fluxes are found once more: without the balance they never come to
@@ -371,7 +350,7 @@ impl Meter<'_, '_> {
 }
 
 /// Lifted numbers of all faces of a block into `nodes.lift`; what they add to the balance into `sums`.
-pub(super) fn lift(place: Place, traces: Traces, nodes: &mut Arrays, mut sums: Option<&mut Sums>) {
+pub(super) fn lift(place: Place, traces: &Traces, nodes: &mut Arrays, mut sums: Option<&mut Sums>) {
     let Place { scheme, block, .. } = place;
     let (blocks, m) = (&scheme.operators.blocks, scheme.operators.line.m);
     let (flux, metered) = (scheme.flux, sums.is_some());
@@ -382,18 +361,19 @@ pub(super) fn lift(place: Place, traces: Traces, nodes: &mut Arrays, mut sums: O
     for (other, plan) in other.iter_mut().zip(plan) {
         *other = match plan.side {
             Side::Aligned(there) => Beyond::Aligned(Aligned(traces.faces(there, 1, length))),
-            Side::Joined { first, second, by } => {
-                let [first, second] = [first, second].map(|there| traces.around(there, length));
-                Beyond::Joined(Joined { first, second, by })
-            }
+            Side::Joined { first, second, by } => Beyond::Joined(Joined {
+                first: traces.around(first, length),
+                second: traces.around(second, length),
+                by,
+            }),
             Side::Gathered(entry) => Beyond::Apart(Apart { traces, from: &blocks.gathered[entry], points: m }),
         };
     }
     let own = traces.faces(4 * block, 4, length);
     let (metric, density) = (place.metric(), place.law().density());
-    scheme.kernel.run(Faces { flux, metered, own, other, metric, points: m, density, lift: &mut nodes.lift });
+    scheme.kernel.run(Faces { flux, metered, own, other: &other, metric, points: m, density, lift: &mut nodes.lift });
     for face in 0..4 {
-        let sides = Sides { face, own: &own[face * length..][..length], other: other[face] };
+        let sides = Sides { face, own: &own[face * length..][..length], other: &other[face] };
         if plan[face].special {
             place.put_right(sides, &mut nodes.lift[6 * m * face..6 * m * (face + 1)]);
         }
@@ -434,7 +414,7 @@ impl<'a> Place<'a> {
 
     /// The flux of a lane at a boundary or at another material, from the `own` numbers at a point and the traces of the other
     /// side, each with its own normal; none elsewhere.
-    fn special(&self, face: usize, point: usize, lane: usize, own: &[F8], other: Beyond) -> Option<[f64; 6]> {
+    fn special(&self, face: usize, point: usize, lane: usize, own: &[F8], other: &Beyond) -> Option<[f64; 6]> {
         let neighbour = &self.scheme.operators.blocks.neighbours[self.block][face][lane];
         if matches!(neighbour, Neighbour::Cell(_) | Neighbour::Padding) {
             return None;
