@@ -271,18 +271,33 @@ fn monomial_gradient(x: [f64; 2], i: i32, j: i32) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{links, rectangle};
+    use crate::mesh::{BoundaryEdge, links, rectangle};
+
+    /// Eight cells: parallelograms, equal trapezoids apart from each other, or all different.
+    fn mesh(kind: usize) -> Mesh {
+        let mut mesh = rectangle([4.0, 2.0], [4, 2]).unwrap();
+        if kind == 1 {
+            let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.2], [0.0, 0.8]];
+            mesh.nodes = (0..32)
+                .map(|k| [2.0 * f64::from(k / 4) + corners[k as usize % 4][0], corners[k as usize % 4][1]])
+                .collect();
+            mesh.cells = (0..8).map(|cell| [0, 1, 2, 3].map(|k| 4 * cell + k)).collect();
+            mesh.edges = (0..32).map(|k| BoundaryEdge { cell: k / 4, face: k % 4, group: 0 }).collect();
+            return mesh;
+        }
+        let place = |x: [f64; 2]| match kind {
+            0 => [x[0] + 0.3 * x[1], 0.7 * x[1]],
+            _ => [1e-3 * (x[0] + 0.2 * (5.0 * x[1]).sin()), 1e-3 * (x[1] + 0.2 * (3.0 * x[0]).cos())],
+        };
+        mesh.nodes.iter_mut().for_each(|x| *x = place(*x));
+        mesh
+    }
 
     #[test]
     fn every_form_of_the_projection_is_that_of_the_complement() {
-        let place = |kind: usize, x: [f64; 2]| match kind {
-            0 => [x[0] + 0.3 * x[1], 0.7 * x[1]],
-            1 => [x[0], x[1] + if x[1] == 1.0 { 0.1 * (1.0 - 2.0 * (x[0] % 2.0)) } else { 0.0 }],
-            _ => [1e-3 * (x[0] + 0.2 * (5.0 * x[1]).sin()), 1e-3 * (x[1] + 0.2 * (3.0 * x[0]).cos())],
-        };
         for kind in 0..3 {
-            let mut mesh = rectangle([4.0, 2.0], [4, 2]).unwrap();
-            mesh.nodes.iter_mut().for_each(|x| *x = place(kind, *x));
+            let mesh = mesh(kind);
+            let mut worst = 0.0f64;
             for degree in 1..=6 {
                 let line = Line::new(degree);
                 let blocks = Blocks::new(&[0; 8], &links(&mesh).unwrap());
@@ -298,14 +313,18 @@ mod tests {
                     let masses: Vec<f64> = geometry.masses(&line, block, lane).collect();
                     let mut f: Vec<f64> = (0..4 * masses.len()).map(|k| ((7 * k + cell) as f64).sin()).collect();
                     let mut expected = f.clone();
-                    project(&complement(&mesh.corners(cell), &line), &masses, &mut expected);
+                    // Equal cells have the complement of the first. (At S6 that of others differs by 1e-9: the smallest of the
+                    // pivots that count are 1e-7 of the largest.)
+                    let example = if kind == 1 { 0 } else { cell };
+                    project(&complement(&mesh.corners(example), &line), &masses, &mut expected);
                     all.project(&line, &geometry, [block, lane], &mut f);
                     for (f, expected) in f.iter().zip(&expected) {
-                        // Derivatives of degree 6 are up to 60 times their function: measured 2e-14.
-                        assert!((f - expected).abs() < 2e-13, "{kind} S{degree}: {f} {expected}");
+                        worst = worst.max((f - expected).abs());
                     }
                 }
             }
+            // Derivatives of degree 6 are up to 60 times their function: measured 6e-14.
+            assert!(worst < 2e-13, "{kind}: {worst:e}");
         }
     }
 }

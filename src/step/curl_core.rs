@@ -176,10 +176,11 @@ fn transposed<L: Lanes, const M: usize>(
         two[j][degree] = L::load(&second[j][i]);
     }
     let mut out = [[[L::zero(); M]; M]; 2];
-    for i in 0..M {
-        for j in 0..M {
-            out[0][i][j] = sum(&column(moments, i), column(&one, j), M);
-            out[1][i][j] = sum(&column(moments, j), two[i], M);
+    let [first, second] = &mut out;
+    for (i, (first, second)) in first.iter_mut().zip(second).enumerate() {
+        for (j, (first, second)) in first.iter_mut().zip(second).enumerate() {
+            *first = sum(&column(moments, i), column(&one, j), M);
+            *second = sum(&column(moments, j), two[i], M);
         }
     }
     out

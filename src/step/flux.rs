@@ -184,9 +184,9 @@ impl<'a> LaneByLane<'a> {
 impl Other for LaneByLane<'_> {
     #[inline(always)]
     fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
-        let mut at = [0; LANES];
-        for lane in 0..LANES {
-            at[lane] = self.first[lane].wrapping_add_signed(point as isize * self.step[lane]);
+        let mut at = self.first;
+        for (at, step) in at.iter_mut().zip(&self.step) {
+            *at = at.wrapping_add_signed(point as isize * step);
         }
         load_lanes(&self.faces, &at)
     }
