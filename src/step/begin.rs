@@ -23,6 +23,8 @@ pub(super) struct Block<'a> {
     pub stage: &'a Stage<'a>,
     /// The block.
     pub block: usize,
+    /// The block that begins after it, if there is one.
+    pub later: Option<usize>,
     /// The state at t_n.
     pub state: &'a State,
     /// dU/dt of the block in earlier stages, [stage][component][node].
@@ -182,8 +184,12 @@ impl Block<'_> {
         match points.pool.share[self.block] {
             Share::Shared(k) => self.predict::<L, M, _>(law, points, [&points.pool.shared[k]; 2], clock),
             Share::Own(k) => {
+                let later = match self.later.map(|later| points.pool.share[later]) {
+                    Some(Share::Own(later)) => later,
+                    _ => k,
+                };
                 let own = &points.pool.own;
-                self.predict::<L, M, _>(law, points, [&own[k], own.get(k + 1).unwrap_or(&own[k])], clock);
+                self.predict::<L, M, _>(law, points, [&own[k], &own[later]], clock);
             }
         }
     }

@@ -130,6 +130,7 @@ impl Pass<'_> {
             scheme,
             stage,
             block,
+            later: tile.plan.after(block, 1),
             state,
             before,
             rate: &mut now[..stride],
