@@ -5,7 +5,7 @@ use super::balance::{self, Sums};
 use super::sums::Terms;
 use super::survey::{Examine, History, Worst};
 use super::volume::{Masses, cofactors, row, with_nodes};
-use super::{Phase, Scheme, Scratch, Stage, Survey, curl, flux};
+use super::{Phase, Scheme, Scratch, Stage, Survey, across, curl, flux};
 use crate::lane::{F8, Lanes, Work};
 use crate::operators::{Line, Metric, determinant};
 use crate::state::State;
@@ -28,7 +28,7 @@ pub(super) struct Block<'a> {
     /// Volume part of J dU/dt of this block in, dU/dt out.
     pub rate: &'a mut [F8],
     /// Traces under way.
-    pub traces: flux::Traces<'a>,
+    pub traces: across::Traces<'a>,
     /// What the last stage makes; none before it.
     pub new: Option<New<'a>>,
     /// Its balance of energy; none where it is off.

@@ -4,6 +4,7 @@
 //! traces, `finish` = flux, lift, update, LCF. [`Scheme`] is read-only, [`State`] is all that changes, [`Work`] carries
 //! nothing from step to step: threads, restart and regrid follow from that.
 
+mod across;
 mod balance;
 mod begin;
 pub mod cfl;

@@ -3,7 +3,7 @@
 use super::balance::Sums;
 use super::survey::Worst;
 use super::tiles::{self, Event, Plan, Slot};
-use super::{Scheme, Scratch, Stage, Survey, Work, begin, finish, flux, volume, with_scratch};
+use super::{Scheme, Scratch, Stage, Survey, Work, across, begin, finish, volume, with_scratch};
 use crate::lane::{self, F8};
 use crate::operators::Operators;
 use crate::state::State;
@@ -14,7 +14,7 @@ struct Tile {
     plan: tiles::Tile,
     /// dU/dt: [slot][stage][component][node].
     rates: Vec<F8>,
-    /// See [`flux::Traces`], with [`volume::width`] numbers a point.
+    /// See [`across::Traces`], with [`volume::width`] numbers a point.
     traces: Vec<F8>,
     /// The worst of its blocks after the last step.
     worst: Worst,
@@ -175,7 +175,7 @@ impl Pass<'_> {
             survey,
             before,
             rate: &mut now[..stride],
-            traces: flux::Traces { own: &tile.traces, seen, shown, slots },
+            traces: across::Traces { own: &tile.traces, seen, shown, slots },
             new,
             sums: out.balance.as_mut().and_then(|sums| sums.get_mut(at)),
             scratch,
