@@ -429,6 +429,39 @@ mod tests {
         }
     }
 
+    /// Lanes of two numbers, picked and read one by one.
+    struct Pick<'a>(&'a [F8], [u8; LANES], u8);
+    impl Work for Pick<'_> {
+        type Out = [F8; 2];
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> [F8; 2] {
+            let Self(all, from, lanes) = self;
+            let (mut out, mut faces, mut first) = ([F8::ZERO; 2], [&all[2..3]; LANES], [0; LANES]);
+            for lane in 0..LANES {
+                first[lane] = usize::from(from[lane]);
+                if lanes >> lane & 1 == 1 {
+                    faces[lane] = &all[1..2];
+                }
+            }
+            L::zero().pick(&all[2], &from, !lanes).pick(&all[1], &from, lanes).store(&mut out[0]);
+            store_array(load_lanes::<L, 1>(&faces, &first), &mut out[1..]);
+            out
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn picked_lanes_are_those_read_one_by_one_on_every_path(from in prop::array::uniform8(0u8..8), lanes: u8) {
+            let all: Vec<F8> = (0..3).map(|k| F8(std::array::from_fn(|lane| (8 * k + lane) as f64))).collect();
+            for kernel in paths() {
+                let expected = F8(std::array::from_fn(|lane| {
+                    all[if lanes >> lane & 1 == 1 { 1 } else { 2 }].0[usize::from(from[lane])]
+                }));
+                prop_assert_eq!(kernel.run(Pick(&all, from, lanes)), [expected; 2]);
+            }
+        }
+    }
+
     /// All that this processor has.
     fn paths() -> impl Iterator<Item = Kernel> {
         Kernel::NAMES.iter().map(|(_, kernel)| *kernel).filter(|kernel| kernel.is_available())

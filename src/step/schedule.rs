@@ -56,6 +56,12 @@ impl Tiles {
         out
     }
 
+    /// How many.
+    #[cfg(test)]
+    pub fn count(&self) -> usize {
+        self.tiles.len()
+    }
+
     /// Makes room for the numbers that the balance of energy needs.
     pub fn widen(&mut self, scheme: &Scheme) {
         self.make_room(scheme.block_traces(true));

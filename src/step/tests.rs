@@ -257,14 +257,16 @@ fn interfaces_conserve_momentum_and_dissipate() {
 
 #[test]
 fn one_two_and_three_threads_give_the_same_bits() {
-    // 72 blocks: large enough for three tiles, of all methods.
-    let mesh = distorted(24);
+    // 200 blocks: large enough for three tiles, of all methods.
+    let mesh = distorted(40);
     for kind in KINDS {
         let scheme = scheme(&mesh, kind, 2, &midpoints(&mesh, 2), wall);
         let results = [1, 2, 3].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let mut state = state(&mesh, &scheme, wavy);
+                // Else nothing is tested.
+                assert_eq!(Work::new(&scheme, &state).tiles.count(), threads, "{kind:?}");
                 march(&scheme, &mut state, 30, 0.05);
                 state
             })

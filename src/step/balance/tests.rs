@@ -129,7 +129,8 @@ fn a_smooth_state_without_jumps_loses_nothing_at_faces() {
 
 #[test]
 fn the_balance_changes_no_bit_of_the_state_and_has_the_same_bits_on_any_number_of_threads() {
-    let mesh = distorted(7);
+    // 200 blocks: large enough for three tiles, of all methods.
+    let mesh = distorted(40);
     for kind in KINDS {
         let force = || BodyForce { value: [data(|x, _| x[1]), data(|_, t| t)], material: None };
         let base = scheme(&mesh, kind, 2, &midpoints(&mesh, 2), CONDITIONS[3].1);
@@ -141,6 +142,7 @@ fn the_balance_changes_no_bit_of_the_state_and_has_the_same_bits_on_any_number_o
         for threads in [1, 2, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             let mut state = start.clone();
+            assert_eq!(pool.install(|| Work::new(&scheme, &state).tiles.count()), threads, "{kind:?}");
             let (balance, energy) = pool.install(|| metered(&scheme, &mut state, 30, 0.05));
             assert!(state == plain, "{kind:?}, {threads} threads");
             assert_eq!(*first.get_or_insert((balance, energy)), (balance, energy), "{kind:?}, {threads} threads");
