@@ -12,7 +12,7 @@ use dgmpm::mesh::{links, rectangle};
 use dgmpm::operators::{Needs, Operators, Sampling};
 use dgmpm::riemann::Flux;
 use dgmpm::state::State;
-use dgmpm::step::{Histories, Method, Scheme, Survey, Sweeps, Tableau, Work};
+use dgmpm::step::{Control, Histories, Method, Relax, Scheme, Survey, Sweeps, Tableau, Work};
 
 const CELLS: usize = 4;
 
@@ -74,7 +74,7 @@ fn scheme(method: Method, degree: usize) -> Result<Scheme, Box<dyn std::error::E
         flux: Flux::Rusanov,
         boundaries: (0..4).map(|_| Box::new(Wall { speed: None }) as Box<dyn Boundary>).collect(),
         sources: vec![],
-        curl_rate: (degree > 0).then_some(alpha * degree as f64),
+        curl: (degree > 0).then_some(Control { relax: Relax::Gradient, rate: alpha * degree as f64 }),
         kernel: Kernel::widest(),
     })
 }

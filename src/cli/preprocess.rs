@@ -65,7 +65,7 @@ pub fn report(
     let lebesgue = extreme(&body.mesh, &certificates, |c| c.lebesgue);
     let cost = cost(scheme, state, settings, -h.0).map_err(|loss| sick(scene, body, scheme, &loss))?;
     for (certificate, &(block, lane)) in certificates.iter_mut().zip(&operators.blocks.slot) {
-        certificate.dt = settings.courant * certificate.h / cost.survey.speed[block].0[lane];
+        certificate.dt = settings.courant * certificate.h / cost.survey.speed[block].fastest.0[lane];
     }
     let memory = operators.bytes() + cost.work + size_of_val(&state.u[..]);
     let mut rows = vec![

@@ -141,6 +141,10 @@ impl Material for J2 {
         self.density
     }
 
+    fn shear_modulus(&self) -> f64 {
+        self.mu
+    }
+
     /// P = A F Cp^-1 + B cof F, A = mu w/r, B = kappa (J - 1) + (2 mu `mean` - A m)/J.
     #[inline(always)]
     fn stress<L: Lane>(&self, f: [L; 4], internal: &mut [L]) -> [L; 4] {

@@ -29,9 +29,14 @@ impl LinearElastic {
 
 impl Material for LinearElastic {
     const INTERNAL: &'static [&'static str] = &[];
+    const GEOMETRIC: bool = false;
 
     fn density(&self) -> f64 {
         self.density
+    }
+
+    fn shear_modulus(&self) -> f64 {
+        self.mu
     }
 
     /// P = lambda (tr eps) 1 + 2 mu eps.

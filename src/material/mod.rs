@@ -34,8 +34,14 @@ pub trait Material: Copy {
     /// Their values in virgin material.
     const VIRGIN: &'static [f64] = &[];
 
+    /// Whether stress stiffens or softens what turns: P(R F) = R P(F). Not so for a law of the small strain.
+    const GEOMETRIC: bool = true;
+
     /// rho0, in kg/m^3.
     fn density(&self) -> f64;
+
+    /// mu = rho0 c_s^2 at F = 1, in Pa.
+    fn shear_modulus(&self) -> f64;
 
     /// P = dW/dF, [P11, P12, P21, P22] in Pa; `internal` goes from its values at t_n to those at F.
     fn stress<L: Lane>(&self, f: [L; 4], internal: &mut [L]) -> [L; 4];

@@ -61,6 +61,10 @@ impl Material for NeoHookean {
         self.density
     }
 
+    fn shear_modulus(&self) -> f64 {
+        self.mu
+    }
+
     /// P = A F + B cof F, A = mu J^(-2/3), B = kappa (J - 1) - A I / (3 J).
     #[inline(always)]
     fn stress<L: Lane>(&self, f: [L; 4], _: &mut [L]) -> [L; 4] {

@@ -6,7 +6,7 @@ mod acoustic;
 mod interface;
 mod rusanov;
 
-pub use acoustic::{Acoustic, AcousticCurl};
+pub use acoustic::{Acoustic, AcousticCurl, AcousticRotation};
 pub use interface::interface;
 pub use rusanov::Rusanov;
 
@@ -60,6 +60,8 @@ names! {
         Acoustic = "acoustic",
         /// Acoustic with a penalty on the tangential jump of F.
         AcousticCurl = "acoustic-curl",
+        /// Acoustic with a penalty on the jump of the rotation of F, which does no work.
+        AcousticRotation = "acoustic-rotation",
     }
 }
 
@@ -88,6 +90,10 @@ macro_rules! with_flux {
             }
             $crate::riemann::Flux::AcousticCurl => {
                 let $flux = &$crate::riemann::AcousticCurl;
+                $body
+            }
+            $crate::riemann::Flux::AcousticRotation => {
+                let $flux = &$crate::riemann::AcousticRotation;
                 $body
             }
         }

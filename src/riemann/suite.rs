@@ -3,7 +3,7 @@ use super::*;
 use crate::material::{Law, NeoHookean};
 use proptest::prelude::*;
 
-const FLUXES: [Flux; 3] = [Flux::Rusanov, Flux::Acoustic, Flux::AcousticCurl];
+const FLUXES: [Flux; 4] = [Flux::Rusanov, Flux::Acoustic, Flux::AcousticCurl, Flux::AcousticRotation];
 
 fn law() -> Law {
     Law::NeoHookean(NeoHookean::new(1.0, 0.3, 1.3))

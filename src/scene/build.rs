@@ -16,7 +16,7 @@ use crate::operators::{Needs, Operators, Sampling};
 use crate::run::{Folder, Settings};
 use crate::source::{self, BodyForce};
 use crate::state::{State, UNKNOWNS};
-use crate::step::{Histories, Method as Integration, Scheme, Sweeps as Picard, Tableau, cfl};
+use crate::step::{Control, Histories, Method as Integration, Relax, Scheme, Sweeps as Picard, Tableau, cfl};
 use crate::tensor;
 use crate::{basis::TimeBasis, scene};
 use std::path::Path;
@@ -138,9 +138,11 @@ impl Scene {
         // `check_groups` has refused groups without a condition; no face looks at that of a periodic group.
         let free = || Box::new(boundary::Free) as Box<dyn boundary::Boundary>;
         let boundaries = mesh.edge_groups.iter().map(|group| condition(group).unwrap_or_else(free)).collect();
-        let curl_rate = match self.curl {
-            Curl::Lcf { alpha } if self.scheme.degree > 0 => Some(alpha * self.scheme.degree as f64),
-            _ => None,
+        let control = |relax, alpha| Control { relax, rate: alpha * self.scheme.degree as f64 };
+        let curl = match self.curl {
+            Curl::Rotation { alpha } => Some(control(Relax::Rotation, alpha)),
+            Curl::Lcf { alpha } => Some(control(Relax::Gradient, alpha)),
+            Curl::Off => None,
         };
         let mut sources: Vec<_> = self.sources.iter().map(|s| self.source(s)).collect();
         // A solution has a body force everywhere and always, or nowhere.
@@ -156,7 +158,8 @@ impl Scene {
             flux: self.scheme.flux,
             boundaries,
             sources,
-            curl_rate,
+            // Constants have no curl.
+            curl: curl.filter(|_| self.scheme.degree > 0),
             kernel,
         }
     }

@@ -218,6 +218,11 @@ pub enum Curl {
         /// alpha; default 3, from N = 4 on 6.
         alpha: f64,
     },
+    /// Rotation and deviator of F - Pi F, at a rate tied to compression.
+    Rotation {
+        /// alpha; default 3, from N = 4 on 6.
+        alpha: f64,
+    },
     /// None.
     Off,
 }

@@ -323,14 +323,18 @@ fn source(mut table: Reader) -> Result<Source> {
 }
 
 fn curl(table: Option<&mut Reader>, degree: usize) -> Result<Curl> {
-    let default = Curl::Lcf { alpha: if degree >= 4 { 6.0 } else { 3.0 } };
-    let Some(table) = table else { return Ok(default) };
-    let lcf = table.choice("control", &[("lcf", true), ("off", false)], &["auto"])?.unwrap_or(true);
-    let curl = match lcf {
-        true => table.number("alpha", POSITIVE)?.map_or(default, |alpha| Curl::Lcf { alpha }),
-        false => Curl::Off,
-    };
-    table.of_kind(if lcf { "lcf" } else { "off" });
+    let alpha = if degree >= 4 { 6.0 } else { 3.0 };
+    let Some(table) = table else { return Ok(Curl::Lcf { alpha }) };
+    let controls = [("rotation", Curl::Rotation { alpha }), ("lcf", Curl::Lcf { alpha }), ("off", Curl::Off)];
+    let mut curl = table.choice("control", &controls, &["auto"])?.unwrap_or(Curl::Lcf { alpha });
+    if let Curl::Rotation { alpha } | Curl::Lcf { alpha } = &mut curl {
+        *alpha = table.number("alpha", POSITIVE)?.unwrap_or(*alpha);
+    }
+    table.of_kind(match curl {
+        Curl::Rotation { .. } => "rotation",
+        Curl::Lcf { .. } => "lcf",
+        Curl::Off => "off",
+    });
     table.finish()?;
     Ok(curl)
 }

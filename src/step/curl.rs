@@ -14,6 +14,30 @@ pub struct Arrays<'a> {
     pub coefficients: &'a mut [F8],
 }
 
+/// The control of the curl of F.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Control {
+    /// What is relaxed.
+    pub relax: Relax,
+    /// alpha N: theta = 1 - exp(-alpha N c dt / h).
+    pub rate: f64,
+}
+
+/// What a control relaxes of R = F - Pi F, see [`crate::operators::curl_free`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Relax {
+    /// All of it.
+    Gradient,
+    /// Rotation and deviator, at a rate tied to compression.
+    Rotation,
+}
+
+/// What of the speed of the prestress the rotation of R goes with.
+pub const ROTATION: f64 = 1.0;
+
+/// What of it the deviator goes with.
+pub const DEVIATOR: f64 = 0.5;
+
 /// (-1)^j / (j + 2)!: 1 - exp(-r) = r - r^2 sum_j of these r^j.
 const SERIES: [f64; 12] = {
     let (mut out, mut j) = ([0.5; 12], 1);
@@ -68,6 +92,54 @@ pub fn project<L: Lanes, const M: usize>(
             Cells { line, metric, curl: &curl_free.curl, core: &pool.own[k] }.project::<L, M>(theta, arrays, u);
         }
     }
+}
+
+/// Takes rotation and deviator of R = F - Pi F from F.
+#[inline(always)]
+pub fn rotate<L: Lanes, const M: usize>(
+    curl_free: &CurlFree,
+    block: usize,
+    theta: [L; 2],
+    masses: Masses<'_, M>,
+    arrays: Arrays,
+    gradients: &mut [F8],
+    u: &mut [F8],
+) {
+    let n = M * M;
+    let gradients = &mut gradients[..4 * n];
+    gradients.copy_from_slice(&u[..4 * n]);
+    let Masses { line, metric, masses } = masses;
+    project::<L, M>(curl_free, block, L::splat(1.0), Masses { line, metric, masses: &mut *masses }, arrays, gradients);
+    let mass = Masses::<'_, M> { line, metric, masses }.run::<L>();
+    let (mut total, mut sum) = (L::zero(), [L::zero(); 4]);
+    for a in 0..n {
+        let (f, pi) = (super::dense::gather::<L, 4>(u, n, a), super::dense::gather::<L, 4>(gradients, n, a));
+        let r = [f[0] - pi[0], f[1] - pi[1], f[2] - pi[2], f[3] - pi[3]];
+        let (e, g) = ([-f[2], -f[3], f[0], f[1]], [f[3], -f[2], -f[1], f[0]]);
+        let q = L::splat(1.0) / dot(f, f);
+        let (turn, trace) = (q * dot(e, r), q * dot(g, r));
+        // -theta_r turn e - theta_d (r - turn e - trace g)
+        let (turn, trace) = ((theta[1] - theta[0]) * turn, theta[1] * trace);
+        let m = L::load(&mass[a]);
+        total = total + m;
+        for k in 0..4 {
+            let d = turn.mul_add(e[k], trace.mul_add(g[k], -(theta[1] * r[k])));
+            sum[k] = m.mul_add(d, sum[k]);
+            d.store(&mut gradients[k * n + a]);
+        }
+    }
+    let inverse = L::splat(-1.0) / total;
+    for (k, (d, f)) in gradients.chunks_exact(n).zip(u.chunks_exact_mut(n)).enumerate() {
+        let mean = sum[k] * inverse;
+        for (d, f) in d.iter().zip(f) {
+            (L::load(f) + (L::load(d) + mean)).store(f);
+        }
+    }
+}
+
+#[inline(always)]
+fn dot<L: Lane>(a: [L; 4], b: [L; 4]) -> L {
+    a[0].mul_add(b[0], a[1] * b[1]) + a[2].mul_add(b[2], a[3] * b[3])
 }
 
 /// Both rows of F at four nodes, a row in registers, see [`Halves`].

@@ -5,7 +5,8 @@ use super::balance::{self, Sums};
 use super::sums::Terms;
 use super::survey::{Examine, History, Worst};
 use super::volume::{Masses, cofactors, row, with_nodes};
-use super::{Phase, Scheme, Scratch, Stage, Survey, across, curl, flux};
+use super::curl::{self, Relax};
+use super::{Phase, Scheme, Scratch, Speeds, Stage, Survey, across, flux};
 use crate::lane::{F8, Lanes, Work};
 use crate::operators::{Line, Metric, determinant};
 use crate::state::State;
@@ -44,7 +45,7 @@ pub(super) struct New<'a> {
     /// Its internal variables.
     pub internal: &'a mut [F8],
     /// Its wave speeds.
-    pub speed: &'a mut F8,
+    pub speed: &'a mut Speeds,
     /// The worst of the blocks so far.
     pub worst: &'a mut Worst,
 }
@@ -62,7 +63,7 @@ impl Block<'_> {
         let Some(New { u, internal, speed, worst }) = self.new.take() else { return };
         kernel.run(Update(&mut self, u));
         self.scratch.phases.book(Phase::Corrector, &mut clock);
-        if self.scheme.curl_rate.is_some() {
+        if self.scheme.curl.is_some() {
             self.meter(1.0, u);
             with_nodes!(line.m, M => kernel.run(Project::<'_, '_, M>(&mut self, u)));
             self.meter(-1.0, u);
@@ -138,17 +139,34 @@ impl Block<'_> {
         terms.add_to::<L>(&self.state.u[begin..begin + stride], next);
     }
 
-    /// LCF with theta = 1 - exp(-alpha c dt / h), c the cell's largest current speed.
+    /// The control of the curl of F.
     #[inline(always)]
     fn project<L: Lanes, const M: usize>(&mut self, next: &mut [F8]) {
         let operators = &self.scheme.operators;
-        let (Some(rate), Some(curl_free)) = (self.scheme.curl_rate, &operators.curl_free) else { return };
-        let (c, metric) = (&self.survey.speed[self.block], &operators.geometry.blocks[self.block]);
-        let theta = curl::relaxation(L::load(c) * L::splat(rate * self.stage.dt) / L::load(&metric.h));
+        let (Some(control), Some(curl_free)) = (self.scheme.curl, &operators.curl_free) else { return };
+        let (speed, metric) = (&self.survey.speed[self.block], &operators.geometry.blocks[self.block]);
         let nodes = &mut self.scratch.nodes;
         let masses = Masses::<'_, M> { line: &operators.line, metric, masses: &mut nodes.masses };
         let arrays = curl::Arrays { weighted: &mut nodes.weighted, coefficients: &mut nodes.coefficients };
-        curl::project::<L, M>(curl_free, self.block, theta, masses, arrays, next);
+        let factor = L::splat(control.rate * self.stage.dt) / L::load(&metric.h);
+        let c = L::load(&speed.fastest);
+        match control.relax {
+            Relax::Gradient => {
+                let theta = curl::relaxation(c * factor);
+                curl::project::<L, M>(curl_free, self.block, theta, masses, arrays, next);
+            }
+            Relax::Rotation => {
+                if speed.prestress.0.iter().all(|c| *c == 0.0) {
+                    return;
+                }
+                let prestress = L::load(&speed.prestress);
+                let theta = [
+                    curl::relaxation((L::splat(curl::ROTATION) * prestress).min(c) * factor),
+                    curl::relaxation((L::splat(curl::DEVIATOR) * prestress).min(c) * factor),
+                ];
+                curl::rotate::<L, M>(curl_free, self.block, theta, masses, arrays, &mut nodes.stage, next);
+            }
+        }
     }
 }
 

@@ -27,11 +27,12 @@ mod tiles;
 mod volume;
 
 pub use balance::Balance;
+pub use curl::{Control, Relax};
 pub use energy::Totals;
 pub use history::Histories;
 pub use phase::{Phase, Phases};
 pub use runge_kutta::Tableau;
-pub use survey::{Loss, Survey};
+pub use survey::{Loss, Speeds, Survey};
 pub use sweeps::Sweeps;
 
 use crate::basis::TimeBasis;
@@ -74,8 +75,8 @@ pub struct Scheme {
     pub boundaries: Vec<Box<dyn Boundary>>,
     /// Sources of momentum.
     pub sources: Vec<Box<dyn Source>>,
-    /// alpha of LCF, theta = 1 - exp(-alpha c dt / h); none where it is off. (The scene's alpha times N.)
-    pub curl_rate: Option<f64>,
+    /// The control of the curl of F; none where it is off.
+    pub curl: Option<Control>,
     /// The instruction set.
     pub kernel: Kernel,
 }
@@ -85,7 +86,7 @@ pub struct Work {
     /// The new state, once the step is done; the caller swaps it in if it is healthy.
     pub next: State,
     /// Its wave speeds, see [`Survey`].
-    speed: Vec<F8>,
+    speed: Vec<survey::Speeds>,
     /// Rates and traces under way.
     tiles: schedule::Tiles,
     /// The balance of the step, by block; none where nobody asks for it.
@@ -120,7 +121,7 @@ impl Work {
         };
         Self {
             next: state.clone(),
-            speed: vec![F8::ZERO; operators.blocks.len()],
+            speed: vec![survey::Speeds::default(); operators.blocks.len()],
             tiles: schedule::Tiles::new(scheme, state.components * operators.nodes()),
             balance: None,
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
@@ -140,7 +141,7 @@ impl Work {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let numbers = self.next.u.len() + self.next.internal.len() + self.speed.len() + self.tiles.numbers();
+        let numbers = self.next.u.len() + self.next.internal.len() + 2 * self.speed.len() + self.tiles.numbers();
         numbers * size_of::<F8>() + self.balance.as_ref().map_or(0, |sums| size_of_val(&sums[..]))
     }
 }

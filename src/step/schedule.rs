@@ -1,7 +1,7 @@
 //! The stages of a step on all blocks, by the plan of [`tiles`].
 
 use super::balance::Sums;
-use super::survey::Worst;
+use super::survey::{Speeds, Worst};
 use super::tiles::{self, Event, Plan, Slot};
 use super::{Scheme, Scratch, Stage, Survey, Work, across, begin, finish, volume, with_scratch};
 use crate::lane::{self, F8};
@@ -199,7 +199,7 @@ struct Out<'a> {
     /// New internal variables.
     internal: &'a mut [F8],
     /// New wave speeds.
-    speed: &'a mut [F8],
+    speed: &'a mut [Speeds],
     /// The balance of the blocks; none where it is off.
     balance: Option<&'a mut [Sums]>,
 }
@@ -210,7 +210,7 @@ impl<'a> Out<'a> {
     fn ask_for(&self, block: usize, stride: usize) {
         if let Some(u) = self.u.get(stride * block..stride * (block + 1)) {
             lane::prefetch(u);
-            lane::prefetch(&self.speed[block..=block]);
+            lane::prefetch(std::slice::from_ref(&self.speed[block].fastest));
         }
     }
 
@@ -295,7 +295,7 @@ impl Scheme {
     fn ask_for_more(&self, survey: &Survey, block: usize) {
         let Operators { blocks, points, .. } = &self.operators;
         lane::prefetch(&blocks.plan[block..=block]);
-        lane::prefetch(&survey.speed[block..=block]);
+        lane::prefetch(std::slice::from_ref(&survey.speed[block].fastest));
         if let Some(points) = points {
             lane::prefetch(points.metric_of(block));
         }

@@ -15,12 +15,22 @@ use rayon::prelude::*;
 /// What a state tells before it is stepped.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Survey {
-    /// Largest current speed over the points (nodes for RK) of each cell, m/s: `[block]`.
-    pub speed: Vec<F8>,
+    /// The speeds of each cell: `[block]`.
+    pub speed: Vec<Speeds>,
     /// The largest of all, m/s.
     pub fastest: f64,
     /// min J over all points.
     pub min_j: f64,
+}
+
+/// The speeds of the cells of a block, m/s.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Speeds {
+    /// Largest current wave speed over the points (nodes for RK).
+    pub fastest: F8,
+    /// s / (rho0 c_s), s = max(0, -tau_min, tau_mean - mu): how fast the prestress tau turns and strains what is no gradient. 0
+    /// without stress and in moderate tension.
+    pub prestress: F8,
 }
 
 /// How a state lost stability.
@@ -108,7 +118,7 @@ impl Scheme {
     pub fn survey(&self, state: &State, memory: &Memory, out: &mut Survey) -> Result<(), Loss> {
         let blocks = &self.operators.blocks;
         let stride = state.components * self.operators.nodes();
-        out.speed.resize(blocks.len(), F8::ZERO);
+        out.speed.resize(blocks.len(), Speeds::default());
         let worst = out.speed.par_iter_mut().enumerate().map(|(block, speed)| {
             with_scratch(&memory.scratch, |scratch| {
                 let u = &state.u[stride * block..stride * (block + 1)];
@@ -127,7 +137,7 @@ impl Scheme {
     /// As [`Scheme::survey`].
     pub fn surveyed(&self, memory: &mut Memory, out: &mut Survey) -> Result<(), Loss> {
         std::mem::swap(&mut out.speed, &mut memory.speed);
-        memory.speed.resize(out.speed.len(), F8::ZERO);
+        memory.speed.resize(out.speed.len(), Speeds::default());
         self.judge(memory.tiles.worst(), &memory.next, out)
     }
 
@@ -202,7 +212,7 @@ pub(super) struct Examine<'a> {
     /// The thread's arrays.
     pub scratch: &'a mut Scratch,
     /// Its largest speed (out).
-    pub speed: &'a mut F8,
+    pub speed: &'a mut Speeds,
     /// The worst of the blocks so far.
     pub worst: &'a mut Worst,
 }
@@ -232,9 +242,12 @@ impl Work for Examine<'_> {
                     after
                 }
             };
+            if scheme.curl.is_some() {
+                prestress::<L, _>(law, &points, internal).store(&mut speed.prestress);
+            }
             examine::<L, _>(law, &points, internal, others)
         });
-        *speed = found.speed;
+        speed.fastest = found.speed;
         worst.see::<L>(found, block, scheme.operators.blocks.count[block]);
         scratch.phases.book(Phase::Survey, &mut clock);
     }
@@ -321,6 +334,35 @@ impl<L: Lane> Extremes<L> {
         // What is not finite in F is not finite in J.
         self.poison = (squares[0] + squares[1] + j).mul_add(L::zero(), self.poison);
     }
+}
+
+/// s / (rho0 c_s) from the Kirchhoff stress tau = P F^T, see [`Speeds`]: at the mean F of the points for an elastic law, the
+/// mean over the points for one with memory. It only sets a rate, so that no weights are needed.
+#[inline(always)]
+fn prestress<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8]) -> L {
+    if !M::GEOMETRIC {
+        return L::zero();
+    }
+    let share = L::splat(1.0 / points.count as f64);
+    let mut sum = [L::zero(); 4];
+    for p in 0..points.count {
+        let f = points.at::<L>(p);
+        let part = if M::INTERNAL.is_empty() { f } else { kirchhoff(law, f, &mut recall::<L, M>(law, internal, p)) };
+        for k in 0..4 {
+            sum[k] = part[k].mul_add(share, sum[k]);
+        }
+    }
+    let tau = if M::INTERNAL.is_empty() { kirchhoff(law, sum, &mut []) } else { sum };
+    let [largest, smallest] = tensor::eigenvalues(tau[0], L::splat(0.5) * (tau[1] + tau[2]), tau[3]);
+    let mean = L::splat(0.5) * (largest + smallest);
+    let s = L::zero().max(-smallest).max(mean - L::splat(law.shear_modulus()));
+    s * L::splat(1.0 / (law.density() * law.shear_modulus()).sqrt())
+}
+
+/// tau = P F^T.
+#[inline(always)]
+fn kirchhoff<L: Lane, M: Material>(law: &M, f: [L; 4], internal: &mut [L]) -> [L; 4] {
+    tensor::times_transposed(law.stress(f, &mut internal[..M::INTERNAL.len()]), f)
 }
 
 /// Looks at F at the points and at what else must be finite.

@@ -72,7 +72,7 @@ pub(super) fn scheme(
         flux: Flux::Rusanov,
         boundaries: mesh.edge_groups.iter().map(|_| boundary()).collect(),
         sources: vec![],
-        curl_rate: (degree > 0).then_some(alpha * degree as f64),
+        curl: (degree > 0).then_some(Control { relax: Relax::Gradient, rate: alpha * degree as f64 }),
         kernel: Kernel::widest(),
     }
 }
@@ -364,7 +364,7 @@ fn without_lcf_the_acoustic_flux_lets_noise_grow_in_compression() {
     // The instability that LCF cures is there: a test that cannot fail on it would test nothing.
     let mesh = rectangle([1.0, 1.0], [6, 6]).unwrap();
     let base = scheme(&mesh, Kind::AderDgfem, 2, &Cloud::default(), wall);
-    let scheme = Scheme { flux: Flux::Acoustic, curl_rate: None, ..base };
+    let scheme = Scheme { flux: Flux::Acoustic, curl: None, ..base };
     let mut state = state(&mesh, &scheme, |_, a| {
         std::array::from_fn(|k| [0.9, 0.0, 0.0, 0.9, 0.0, 0.0][k] + 1e-9 * noise(6 * a + k))
     });

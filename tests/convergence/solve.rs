@@ -14,7 +14,7 @@ use dgmpm::riemann::Flux;
 use dgmpm::run::{Report, Run, Settings};
 use dgmpm::source::Source;
 use dgmpm::state::State;
-use dgmpm::step::{Histories, Method, Scheme, Sweeps, Tableau, cfl};
+use dgmpm::step::{Control, Histories, Method, Relax, Scheme, Sweeps, Tableau, cfl};
 use std::sync::atomic::AtomicBool;
 
 /// A method, with the layout of its points.
@@ -102,7 +102,7 @@ fn sampled(problem: &Problem, mesh: &Mesh, sampling: Option<Sampling>, degree: u
         flux: Flux::Rusanov,
         boundaries,
         sources,
-        curl_rate: problem.alpha.map(|alpha| alpha * degree as f64),
+        curl: problem.alpha.map(|alpha| Control { relax: Relax::Gradient, rate: alpha * degree as f64 }),
         kernel: Kernel::widest(),
     }
 }
