@@ -20,6 +20,12 @@ pub fn dot<L: Lane>(a: [L; 2], b: [L; 2]) -> L {
     a[0].mul_add(b[0], a[1] * b[1])
 }
 
+/// A : B
+#[inline(always)]
+pub fn contract<L: Lane>(a: [L; 4], b: [L; 4]) -> L {
+    a[0].mul_add(b[0], a[1] * b[1]) + a[2].mul_add(b[2], a[3] * b[3])
+}
+
 /// F N
 #[inline(always)]
 pub fn times<L: Lane>(f: [L; 4], n: [L; 2]) -> [L; 2] {

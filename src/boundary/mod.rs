@@ -14,7 +14,7 @@ pub use traction::Traction;
 pub use velocity::Velocity;
 pub use wall::Wall;
 
-use crate::riemann::{Impedance, Trace, current_normal};
+use crate::riemann::{Medium, Trace};
 use std::sync::Arc;
 
 /// A number that a user prescribes over reference coordinates X (m) and time (s).
@@ -36,14 +36,20 @@ pub struct FacePoint {
     pub x: [f64; 2],
     /// Unit outward normal N in the initial configuration.
     pub normal: [f64; 2],
-    /// rho0 of the cell, kg/m^3.
-    pub density: f64,
+    /// What the cell is made of.
+    pub medium: Medium<f64>,
 }
 
 impl FacePoint {
-    /// Z with the current normal and speeds of the inside.
-    pub fn impedance(&self, inside: &Trace<f64>) -> Impedance<f64> {
-        Impedance::new(inside.c, self.density, current_normal(inside.f, inside.f, self.normal))
+    /// z_p = rho0 c_p with the current speed of the inside, kg/(m^2 s). One impedance for all directions: a condition is the
+    /// flux [`crate::riemann::Dual`] against what it prescribes, and the larger one lets a body under load creep less.
+    pub fn impedance(&self, inside: &Trace<f64>) -> f64 {
+        self.medium.density * inside.c[0]
+    }
+
+    /// theta/z_p, m^2 s/kg: what the velocity of the face owes to a jump of traction.
+    pub fn admittance(&self, inside: &Trace<f64>) -> f64 {
+        self.medium.share / self.impedance(inside)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::riemann::star;
 use crate::tensor;
 
 const N: [f64; 2] = [0.6, 0.8];
-const AT: FacePoint = FacePoint { x: [0.3, 0.4], normal: N, density: 1.3 };
+const AT: FacePoint = FacePoint { x: [0.3, 0.4], normal: N, medium: Medium { density: 1.3, shear_impedance: 1.0, share: 1.0 } };
 const NOW: [TimeNode; 1] = [TimeNode { time: 0.0, weight: 1.0 }];
 
 fn trace(f: [f64; 4], v: [f64; 2]) -> Trace<f64> {
@@ -47,7 +47,7 @@ fn an_outgoing_plane_wave_leaves_through_the_absorbing_edge() {
     let amplitude = 1e-9;
     let rest = trace([1.0, 0.0, 0.0, 1.0], [0.0; 2]);
     let v = N.map(|n| amplitude * n);
-    let z = AT.density * rest.c[0];
+    let z = AT.medium.density * rest.c[0];
     let state = Trace { v, t: N.map(|n| -z * amplitude * n), ..rest };
     let flux = Absorbing.flux(&state, &AT, &NOW);
     let own = star(state.v, state.t, N);

@@ -3,7 +3,7 @@
 use super::{Boundary, Data, FacePoint, TimeNode, mean};
 use crate::riemann::{Trace, star};
 
-/// v* = v_d(X, t), t* = t + Z (v_d - v).
+/// v* = v_d(X, t), t* = t + z_p (v_d - v).
 #[derive(Clone)]
 pub struct Velocity {
     /// Components of v_d, m/s.
@@ -13,7 +13,7 @@ pub struct Velocity {
 impl Boundary for Velocity {
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, times: &[TimeNode]) -> [f64; 6] {
         let v = [0, 1].map(|i| mean(&self.value[i], at.x, times));
-        let dt = at.impedance(inside).times([v[0] - inside.v[0], v[1] - inside.v[1]]);
+        let dt = [0, 1].map(|i| at.impedance(inside) * (v[i] - inside.v[i]));
         star(v, [inside.t[0] + dt[0], inside.t[1] + dt[1]], at.normal)
     }
 }

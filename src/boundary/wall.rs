@@ -1,11 +1,12 @@
 //! Frictionless bilateral wall, moving or not; at rest it is the plane of symmetry.
 
 use super::{Boundary, Data, FacePoint, TimeNode, mean};
-use crate::riemann::{Trace, add_tangential, star, tangent};
-use crate::tensor::{dot, times as product};
+use crate::riemann::{Dual, Trace, star, tangent};
+use crate::tensor::dot;
 
-/// v*.N = v_w, t*.N = t.N - z_p (v.N - v_w), t*.T = 0, v*.T = v.T - t.T / z_s, and
-/// Flux*_F += c_s N (N.F T) (x) T, which drives the shear N.F T of the wall to 0.
+/// v*.N = v_w, t*.N = t.N - z_p (v.N - v_w), t*.T = 0, v*.T = v.T - theta t.T / z_p: the flux [`Dual`] against the mirror image of
+/// the inside, with what that flux adds to the rows of F for the jump of F to its image: it turns the body's edge into the
+/// wall without work.
 #[derive(Clone)]
 pub struct Wall {
     /// Speed v_w of the wall along the outward normal, m/s; none for a wall at rest.
@@ -15,15 +16,25 @@ pub struct Wall {
 impl Boundary for Wall {
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, times: &[TimeNode]) -> [f64; 6] {
         let (n, t) = (at.normal, tangent(at.normal));
-        let z = inside.c.map(|c| at.density * c);
         let wall = self.speed.as_ref().map_or(0.0, |speed| mean(speed, at.x, times));
         // The wall pushes against v.N - v_w > 0, so that the traction along N falls.
-        let pressure = dot(inside.t, n) - z[0] * (dot(inside.v, n) - wall);
-        let slip = dot(inside.v, t) - dot(inside.t, t) / z[1];
+        let pressure = dot(inside.t, n) - at.impedance(inside) * (dot(inside.v, n) - wall);
+        let slip = dot(inside.v, t) - at.admittance(inside) * dot(inside.t, t);
         let v = [0, 1].map(|i| wall * n[i] + slip * t[i]);
         let mut flux = star(v, n.map(|x| pressure * x), n);
-        let shear = inside.c[1] * dot(n, product(inside.f, t));
-        add_tangential(&mut flux, n.map(|x| shear * x), n);
+        let add = Dual::incompatible(inside, &mirror(inside, n), n, inside.c[0], &at.medium);
+        (0..4).for_each(|k| flux[k] += add[k]);
         flux
     }
+}
+
+/// The image of F and t behind the wall: M F M and M t with M = 1 - 2 N N^T, and t looked at with the same N.
+fn mirror(inside: &Trace<f64>, n: [f64; 2]) -> Trace<f64> {
+    let reflect = |x: [f64; 2]| [0, 1].map(|i| x[i] - 2.0 * n[i] * dot(n, x));
+    let [a, b] = [reflect([inside.f[0], inside.f[1]]), reflect([inside.f[2], inside.f[3]])];
+    let (one, two) = (reflect([a[0], b[0]]), reflect([a[1], b[1]]));
+    let along = dot(inside.t, n);
+    // Of the traction the normal part stays and the tangential one turns.
+    let t = [0, 1].map(|i| 2.0 * along * n[i] - inside.t[i]);
+    Trace { f: [one[0], two[0], one[1], two[1]], t, ..*inside }
 }

@@ -133,6 +133,11 @@ impl Law {
         with_law!(self, law => law.density())
     }
 
+    /// mu, in Pa, see [`Material::shear_modulus`].
+    pub fn shear_modulus(&self) -> f64 {
+        with_law!(self, law => law.shear_modulus())
+    }
+
     /// What the law says at one point, integrated from `internal` to F.
     pub fn response(&self, f: [f64; 4], internal: &Internal<f64>) -> Response {
         with_law!(self, law => respond(law, f, internal))

@@ -1,6 +1,6 @@
 //! Acoustic (linearised Godunov) fluxes.
 
-use super::{Impedance, Riemann, Trace, add_tangential, current_normal, star, tangent};
+use super::{Impedance, Medium, Riemann, Trace, add_tangential, current_normal, star, tangent};
 use crate::lane::Lane;
 use crate::tensor;
 
@@ -16,10 +16,10 @@ impl Riemann for Acoustic {
     const SHEAR: bool = true;
 
     #[inline(always)]
-    fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6] {
+    fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6] {
         let half = L::splat(0.5);
         let c = [minus.c[0].max(plus.c[0]), minus.c[1].max(plus.c[1])];
-        let z = Impedance::new(c, density, current_normal(minus.f, plus.f, n));
+        let z = Impedance::new(c, medium.density, current_normal(minus.f, plus.f, n));
         let dv = z.solve([plus.t[0] - minus.t[0], plus.t[1] - minus.t[1]]);
         let dt = z.times([plus.v[0] - minus.v[0], plus.v[1] - minus.v[1]]);
         let v = [half * (minus.v[0] + plus.v[0] + dv[0]), half * (minus.v[1] + plus.v[1] + dv[1])];
@@ -32,39 +32,9 @@ impl Riemann for AcousticCurl {
     const SHEAR: bool = true;
 
     #[inline(always)]
-    fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6] {
-        let mut flux = Acoustic.flux(minus, plus, n, density);
+    fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6] {
+        let mut flux = Acoustic.flux(minus, plus, n, medium);
         add_tangential(&mut flux, curl_penalty(minus, plus, n), n);
-        flux
-    }
-}
-
-/// [`Acoustic`] with the rotation part of Rusanov's jump of F alone: Flux*_F += -c_p/2 (e : `[F]`) e / |e|^2, with e = E F, F the mean
-/// of both sides and E = [[0, -1], [1, 0]].
-///
-/// e is the rate of F in a rotation. P F^T is symmetric, so P : (E F) = 0 on each side: the term damps the rotation of
-/// neighbours against each other without work (for a law linear in F, where e = E, exactly none), while [`Acoustic`] dissipates
-/// half `[t]` Z^-1 `[t]` + half `[v]` Z `[v]`, whatever the law. With a control inside the cells
-/// ([`crate::operators::curl_free`]) it is stable in tension, compression and shear.
-#[derive(Debug, Clone, Copy)]
-pub struct AcousticRotation;
-
-impl Riemann for AcousticRotation {
-    const SHEAR: bool = true;
-
-    #[inline(always)]
-    fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6] {
-        let mut flux = Acoustic.flux(minus, plus, n, density);
-        let (m, p) = (minus.f, plus.f);
-        // Twice the mean: the factor falls out of e (e : [F]) / |e|^2.
-        let f = [m[0] + p[0], m[1] + p[1], m[2] + p[2], m[3] + p[3]];
-        let e = [-f[2], -f[3], f[0], f[1]];
-        let square = e[0].mul_add(e[0], e[1] * e[1]) + e[2].mul_add(e[2], e[3] * e[3]);
-        let turn = e[0].mul_add(p[0] - m[0], e[1] * (p[1] - m[1])) + e[2].mul_add(p[2] - m[2], e[3] * (p[3] - m[3]));
-        let factor = L::splat(-0.5) * minus.c[0].max(plus.c[0]) * turn / square;
-        for k in 0..4 {
-            flux[k] = factor.mul_add(e[k], flux[k]);
-        }
         flux
     }
 }

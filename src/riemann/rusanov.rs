@@ -1,6 +1,6 @@
 //! Local Lax-Friedrichs (Rusanov) flux.
 
-use super::{Riemann, Trace};
+use super::{Medium, Riemann, Trace};
 use crate::lane::Lane;
 
 /// Flux* = mean of both sides - c/2 (U^+ - U^-), c the larger current c_p.
@@ -11,12 +11,12 @@ impl Riemann for Rusanov {
     const SHEAR: bool = false;
 
     #[inline(always)]
-    fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L) -> [L; 6] {
+    fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6] {
         // Halves and signs stand in what is the same at all points of a face: fewer operations for each number.
         let half = L::splat(-0.5);
         let back = [half * n[0], half * n[1]];
         let c = half * minus.c[0].max(plus.c[0]);
-        let jump = c * density;
+        let jump = c * medium.density;
         let mut flux = [L::zero(); 6];
         for i in 0..2 {
             let v = minus.v[i] + plus.v[i];
@@ -29,11 +29,11 @@ impl Riemann for Rusanov {
 
     /// In jumps alone: -c/2 [F] - 1/2 [v] (x) N for the rows of F. The scale stands in what is the same for all rows.
     #[inline(always)]
-    fn lifted<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density: L, scale: L) -> [L; 6] {
+    fn lifted<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>, scale: L) -> [L; 6] {
         let half = L::splat(-0.5) * scale;
         let back = [half * n[0], half * n[1]];
         let c = half * minus.c[0].max(plus.c[0]);
-        let jump = c * density;
+        let jump = c * medium.density;
         let mut out = [L::zero(); 6];
         for i in 0..2 {
             let v = plus.v[i] - minus.v[i];

@@ -5,6 +5,7 @@ use super::volume::Masses;
 use crate::lane::{F8, Lane, Lanes, Work};
 use crate::operators::curl_free::{Class, Halves};
 use crate::operators::{CurlFree, Matrix, Share};
+use crate::tensor::contract;
 
 /// Memory of the projection.
 pub struct Arrays<'a> {
@@ -116,8 +117,8 @@ pub fn rotate<L: Lanes, const M: usize>(
         let (f, pi) = (super::dense::gather::<L, 4>(u, n, a), super::dense::gather::<L, 4>(gradients, n, a));
         let r = [f[0] - pi[0], f[1] - pi[1], f[2] - pi[2], f[3] - pi[3]];
         let (e, g) = ([-f[2], -f[3], f[0], f[1]], [f[3], -f[2], -f[1], f[0]]);
-        let q = L::splat(1.0) / dot(f, f);
-        let (turn, trace) = (q * dot(e, r), q * dot(g, r));
+        let q = L::splat(1.0) / contract(f, f);
+        let (turn, trace) = (q * contract(e, r), q * contract(g, r));
         // -theta_r turn e - theta_d (r - turn e - trace g)
         let (turn, trace) = ((theta[1] - theta[0]) * turn, theta[1] * trace);
         let m = L::load(&mass[a]);
@@ -135,11 +136,6 @@ pub fn rotate<L: Lanes, const M: usize>(
             (L::load(f) + (L::load(d) + mean)).store(f);
         }
     }
-}
-
-#[inline(always)]
-fn dot<L: Lane>(a: [L; 4], b: [L; 4]) -> L {
-    a[0].mul_add(b[0], a[1] * b[1]) + a[2].mul_add(b[2], a[3] * b[3])
 }
 
 /// Both rows of F at four nodes, a row in registers, see [`Halves`].

@@ -9,7 +9,7 @@ use crate::lane::{F8, LANES, Lanes, Work, load_array, store_array};
 use crate::material::Law;
 use crate::mesh::map;
 use crate::operators::{Metric, Neighbour, Side};
-use crate::riemann::{Flux, Riemann, Trace, interface};
+use crate::riemann::{Flux, Medium, Riemann, Trace, interface};
 use crate::with_flux;
 
 /// Runs `$body` with `$riemann` bound to the flux and `$numbers` to the constant numbers of a trace, see [`width`].
@@ -64,7 +64,7 @@ struct Faces<'a> {
     metric: &'a Metric<F8>,
     /// Points of a face.
     points: usize,
-    density: f64,
+    medium: Medium<f64>,
     /// [face][point][6], out.
     lift: &'a mut [F8],
 }
@@ -93,7 +93,7 @@ impl Faces<'_> {
     #[inline(always)]
     fn of_face<L: Lanes, O: Other, R: Riemann, const W: usize>(&mut self, face: usize, other: O, riemann: &R) {
         let m = self.points;
-        let density = L::splat(self.density);
+        let medium = self.medium.splat::<L>();
         let own = &self.own.as_chunks::<W>().0[face * m..(face + 1) * m];
         let metric = self.metric.load::<L>();
         let (normal, length) = (metric.normal(face), metric.length(face));
@@ -101,7 +101,7 @@ impl Faces<'_> {
         for point in 0..m {
             let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[point]));
             let plus = trace_of::<L, R, W>(&turned(other.load::<L, W>(point)));
-            store_array(riemann.lifted(&minus, &plus, normal, density, length), &mut lift[point]);
+            store_array(riemann.lifted(&minus, &plus, normal, &medium, length), &mut lift[point]);
         }
     }
 }
@@ -147,14 +147,14 @@ impl Meter<'_, '_> {
         let neighbours = &scheme.operators.blocks.neighbours[place.block][face];
         let factor = place.stage.dt * scheme.weight(place.stage.number);
         let normal = metric.normal(face);
-        let density = L::splat(place.law().density());
+        let medium = place.medium().splat::<L>();
         let weights = &scheme.operators.line.basis.weights[..scheme.operators.line.m];
         for (point, (own, weight)) in sides.own.as_chunks::<W>().0.iter().zip(weights).enumerate() {
             let beyond = turned(sides.other.load::<L, W>(point));
             let minus = trace_of::<L, R, W>(&load_array::<L, W>(own));
             let plus = trace_of::<L, R, W>(&beyond);
             let (mut flux, mut there, mut scale) = ([F8::ZERO; 6], [F8::ZERO; W], F8::ZERO);
-            store_array(riemann.flux(&minus, &plus, normal, density), &mut flux);
+            store_array(riemann.flux(&minus, &plus, normal, &medium), &mut flux);
             store_array(beyond, &mut there);
             (metric.length(face) * L::splat(*weight * factor)).store(&mut scale);
             for (lane, neighbour) in neighbours.iter().enumerate() {
@@ -194,8 +194,8 @@ pub(super) fn lift(place: Place, traces: &Traces, nodes: &mut Arrays, mut sums: 
         };
     }
     let own = traces.faces(4 * block, 4, length);
-    let (metric, density) = (place.metric(), place.law().density());
-    scheme.kernel.run(Faces { flux, metered, own, other: &other, metric, points: m, density, lift: &mut nodes.lift });
+    let (metric, medium) = (place.metric(), place.medium());
+    scheme.kernel.run(Faces { flux, metered, own, other: &other, metric, points: m, medium, lift: &mut nodes.lift });
     for face in 0..4 {
         let sides = Sides { face, own: &own[face * length..][..length], other: &other[face] };
         if plan[face].special {
@@ -218,6 +218,12 @@ impl<'a> Place<'a> {
     #[inline]
     pub fn law(&self) -> &'a Law {
         &self.scheme.laws[self.scheme.operators.blocks.material[self.block]]
+    }
+
+    /// What its cells are made of.
+    #[inline]
+    fn medium(&self) -> Medium<f64> {
+        Medium::new(self.law(), self.scheme.operators.degree)
     }
 
     /// The lifted numbers of lanes at a boundary or at another material, in `lift`, [point][6].
@@ -244,7 +250,7 @@ impl<'a> Place<'a> {
             return None;
         }
         let law = self.law();
-        let at = self.face_point(face, point, lane, law.density());
+        let at = self.face_point(face, point, lane);
         let trace = |x: &dyn Fn(usize) -> f64, sign: f64, law: &Law| {
             let f = [x(0), x(1), x(2), x(3)];
             let c = if self.scheme.flux.has_shear() { [x(8), x(9)] } else { law.speeds(f, at.normal) };
@@ -262,13 +268,13 @@ impl<'a> Place<'a> {
         }
     }
 
-    fn face_point(&self, face: usize, point: usize, lane: usize, density: f64) -> FacePoint {
+    fn face_point(&self, face: usize, point: usize, lane: usize) -> FacePoint {
         let geometry = &self.scheme.operators.geometry;
         let along = self.scheme.operators.line.basis.nodes[point];
         let end = (face % 2) as f64;
         let xi = if face < 2 { [end, along] } else { [along, end] };
         let x = map::position(&geometry.corners_of(self.block, lane), xi);
         let normal = geometry.blocks[self.block].lane(lane).normal(face);
-        FacePoint { x, normal, density }
+        FacePoint { x, normal, medium: self.medium() }
     }
 }

@@ -1,0 +1,109 @@
+//! Lax-Friedrichs in the variables dual to (F, p), velocity and traction, with what holds it under compression.
+
+use super::{Medium, Riemann, Trace};
+use crate::lane::Lane;
+use crate::tensor;
+
+/// v* = mean v + theta/(2 z_p) `[t]`, t* = mean t + z_p/2 `[v]`, z_p = rho0 c_p with the larger current speed, theta = [`Medium::share`];
+/// and two jumps of F itself, c_p/4 of its rotation and c_d/2 of its deviator:
+///
+/// ```text
+/// Flux*_F += -c_p/4 r e - c_d/2 ([F] - r e - q (g : [F]) g),    r = q (e : [F]),  q = 1/|F|^2,
+///     e = E F,  E = [[0, -1], [1, 0]],  g = cof F,  F the mean of both sides (|e| = |g| = |F|, e : g = 0)
+/// c_d = s/(4 rho0 c_s),  s = max(0, -(mean t).(F N)),  rho0 c_s of the law at F = 1
+/// ```
+///
+/// Velocity and traction are the derivatives of the energy: their part dissipates theta/(2 z_p) `[t]`^2 + z_p/2 `[v]`^2, never less
+/// than 0, whatever the law and its history. (Rusanov's c_p/2 `[F] : [P]` has either sign where two sides have yielded
+/// differently.) e is the rate of F in a rotation, P F^T is symmetric, and P : e = 0: the second part damps the rotation of
+/// neighbours against each other without work. Under compression rotations and then deviators have negative energy, and the
+/// jump of traction drives them; the third part is 0 without compression across the face.
+///
+/// theta < 1: what the jump of traction moves is a displacement of the face that no cell has, so that a body under load
+/// creeps and is too soft (the jumps at a re-entrant corner never vanish). The one-step scheme needs some of it; see
+/// `docs/method.md` for the limits, the growth rates and what each weight costs in accuracy.
+#[derive(Debug, Clone, Copy)]
+pub struct Dual;
+
+/// Weights of the jumps of rotation and deviator.
+const ROTATION: f64 = 0.25;
+const DEVIATOR: f64 = 0.125;
+
+impl Dual {
+    /// What is added to the rows of F: -c_p/4 r e - c_d/2 D, `c` being c_p.
+    #[inline(always)]
+    pub fn incompatible<L: Lane>(
+        minus: &Trace<L>,
+        plus: &Trace<L>,
+        n: [L; 2],
+        c: L,
+        medium: &Medium<L>,
+    ) -> [L; 4] {
+        let (half, m, p) = (L::splat(0.5), minus.f, plus.f);
+        let f = [half * (m[0] + p[0]), half * (m[1] + p[1]), half * (m[2] + p[2]), half * (m[3] + p[3])];
+        let j = [p[0] - m[0], p[1] - m[1], p[2] - m[2], p[3] - m[3]];
+        let (e, g) = ([-f[2], -f[3], f[0], f[1]], tensor::cofactor(f));
+        let inverse = L::splat(1.0) / tensor::contract(f, f);
+        let (turn, trace) = (inverse * tensor::contract(e, j), inverse * tensor::contract(g, j));
+        let pushed = tensor::dot([minus.t[0] + plus.t[0], minus.t[1] + plus.t[1]], tensor::times(f, n));
+        let s = (L::splat(-0.5) * pushed).max(L::zero());
+        let deviator = L::splat(-DEVIATOR) * s / medium.shear_impedance;
+        let (turn, trace) = (turn * (L::splat(-ROTATION) * c - deviator), -(trace * deviator));
+        let mut out = [L::zero(); 4];
+        for k in 0..4 {
+            out[k] = turn.mul_add(e[k], trace.mul_add(g[k], deviator * j[k]));
+        }
+        out
+    }
+
+    /// v* - v^- and t*.
+    #[inline(always)]
+    fn star<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, z: L, share: L) -> ([L; 2], [L; 2]) {
+        let half = L::splat(0.5);
+        let (with_t, with_v) = (half * share / z, half * z);
+        let (mut v, mut t) = ([L::zero(); 2], [L::zero(); 2]);
+        for i in 0..2 {
+            let jump = plus.v[i] - minus.v[i];
+            v[i] = with_t.mul_add(plus.t[i] - minus.t[i], half * jump);
+            t[i] = with_v.mul_add(jump, half * (minus.t[i] + plus.t[i]));
+        }
+        (v, t)
+    }
+}
+
+impl Riemann for Dual {
+    const SHEAR: bool = false;
+
+    #[inline(always)]
+    fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6] {
+        let c = minus.c[0].max(plus.c[0]);
+        let z = medium.density * c;
+        let with_t = L::splat(0.5) * medium.share / z;
+        let (_, t) = Self::star(minus, plus, z, medium.share);
+        let add = Self::incompatible(minus, plus, n, c, medium);
+        let mut flux = [L::zero(); 6];
+        for i in 0..2 {
+            // Not from v^- on: the sides must agree to the bit.
+            let v = with_t.mul_add(plus.t[i] - minus.t[i], L::splat(0.5) * (minus.v[i] + plus.v[i]));
+            flux[2 * i] = add[2 * i] - v * n[0];
+            flux[2 * i + 1] = add[2 * i + 1] - v * n[1];
+            flux[4 + i] = -t[i];
+        }
+        flux
+    }
+
+    /// In jumps alone.
+    #[inline(always)]
+    fn lifted<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>, scale: L) -> [L; 6] {
+        let c = minus.c[0].max(plus.c[0]);
+        let (v, t) = Self::star(minus, plus, medium.density * c, medium.share);
+        let add = Self::incompatible(minus, plus, n, c, medium);
+        let mut out = [L::zero(); 6];
+        for i in 0..2 {
+            out[2 * i] = scale * (add[2 * i] - v[i] * n[0]);
+            out[2 * i + 1] = scale * (add[2 * i + 1] - v[i] * n[1]);
+            out[4 + i] = -(scale * t[i]);
+        }
+        out
+    }
+}
