@@ -43,7 +43,7 @@ pub fn of_run(
     all.extend(fast_boundary(scene, mesh, scheme));
     if steps <= 1.0 {
         all.push(format!(
-            "the run is one step: it ends {:e} s after its start, and a step is {dt:.3e} s; times are in s, moduli in Pa, \
+            "the run is one step: it ends {:.3e} s after its start, and a step is {dt:.3e} s; times are in s, moduli in Pa, \
              densities in kg/m^3, lengths in m",
             scene.end - state.time
         ));
