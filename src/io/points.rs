@@ -239,7 +239,7 @@ mod tests {
             ("x,y\n1,2,3\n", 2, "more numbers than names"),
             ("1,2\n1,2,3\n", 2, "more numbers than in the rows before"),
             ("1,2,3\n1,2\n", 2, "fewer numbers than in the rows before"),
-            ("1,2\n1,2 m\n", 2, "`m` is not a number"),
+            ("1,2\n1,2 m\n", 2, "`2 m` is not a number"),
         ] {
             let why = read_text(text).unwrap_err();
             assert!(why.contains(&format!("points.csv:{line}:1: ")) && why.contains(what), "{text:?}: {why}");

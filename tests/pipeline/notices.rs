@@ -252,7 +252,7 @@ fn a_shift_by_steps_goes_there_and_back_and_one_too_far_is_found_before_the_firs
     names.dedup();
     assert_eq!(
         (names.len(), &grids[grids.len() - 1][..]),
-        (2, if rows.len() % 2 == 0 { "mesh.h5" } else { &names[1] })
+        (2, if rows.len().is_multiple_of(2) { "mesh.h5" } else { &names[1] })
     );
     // Steps do not shrink from grid to grid: a cell is .2 m wide in place of .25 m, and sheared by .02 m.
     let dt = |key: &str| summary[key].as_f64().unwrap();
