@@ -56,9 +56,7 @@ pub fn run(args: &Args) -> Result<()> {
     if let Some(out) = &args.all {
         return Campaign { kernel, out: out.clone(), mesh: args.mesh.clone(), say: &|text| say(text) }.run();
     }
-    if args.threads == 0 {
-        return Err(Error::input("--threads is 0", "give a number of threads from 1"));
-    }
+    super::check_threads(args.threads)?;
     let (setup, length) = (args.setup(kernel)?, args.length()?);
     let problem = setup.build()?;
     let measured = bench::measure(&problem, args.threads, length)?;

@@ -92,7 +92,7 @@ impl Export {
     fn sheet(&self, files: &GridFiles) -> Result<Sheet> {
         let mesh = mesh_file::read_mesh(&self.folder.root.join(&files.mesh))?;
         let (cloud, more) = cloud_file::read_with(&self.folder.root.join(&files.cloud), &mesh)?;
-        self.scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
+        self.scene.check_mesh(&mesh)?;
         let material = self.scene.material_of_cells(&mesh);
         let body = Body { mesh, cloud, virtual_points: more.virtual_points, deficient: vec![], material };
         let certificates = match more.certificates {

@@ -1,10 +1,11 @@
 //! `dgmpm mesh`: import, make, inspect.
 
-use super::keep;
-use super::print::{row, say, table};
+use super::print::{note, row, say, table};
+use super::{keep, notices};
 use crate::error::{Error, Result};
 use crate::io::{gmsh, mesh_file};
-use crate::mesh::{Mesh, links, quality::Quality, rectangle};
+use crate::mesh::parts::EdgeCount;
+use crate::mesh::{Link, Mesh, links, quality::Quality, rectangle};
 use crate::scene::build::read_mesh;
 use std::path::{Path, PathBuf};
 
@@ -53,26 +54,35 @@ enum Action {
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     match (&args.action, &args.file) {
-        (Some(Action::Info { file }), _) => info(&load(file)?),
+        (Some(Action::Info { file }), _) => {
+            let (mesh, links) = load(file)?;
+            info(&mesh, &links);
+            Ok(())
+        }
         (Some(Action::Rectangle { size, cells, to }), _) => {
             let pair = |what| Error::input(format!("{what} wants two numbers"), "for example --size 3,3 --cells 30,30");
             let size = size[..].try_into().map_err(|_| pair("--size"))?;
             let cells = cells[..].try_into().map_err(|_| pair("--cells"))?;
-            write(&rectangle(size, cells)?, to, Path::new("rectangle.h5"))
+            let mesh = rectangle(size, cells)?;
+            let links = links(&mesh)?;
+            write(&mesh, &links, to, Path::new("rectangle.h5"))
         }
-        (None, Some(file)) => write(&load(file)?, &args.to, &file.with_extension("h5")),
+        (None, Some(file)) => {
+            let (mesh, links) = load(file)?;
+            write(&mesh, &links, &args.to, &file.with_extension("h5"))
+        }
         (None, None) => Err(Error::input("no mesh is named", "give a Gmsh file, or `rectangle`, or `info FILE`")),
     }
 }
 
-/// A mesh whose boundary is wholly tagged.
-fn load(file: &Path) -> Result<Mesh> {
+/// A mesh whose boundary is wholly tagged, with what lies behind its faces.
+fn load(file: &Path) -> Result<(Mesh, Vec<[Link; 4]>)> {
     let mesh = read_mesh(file)?;
-    links(&mesh)?;
-    Ok(mesh)
+    let links = links(&mesh)?;
+    Ok((mesh, links))
 }
 
-fn write(mesh: &Mesh, to: &To, default: &Path) -> Result<()> {
+fn write(mesh: &Mesh, links: &[[Link; 4]], to: &To, default: &Path) -> Result<()> {
     let out = to.out.as_deref().unwrap_or(default);
     keep(out, to.force)?;
     if out.extension().is_some_and(|ending| ending == "msh") {
@@ -80,18 +90,18 @@ fn write(mesh: &Mesh, to: &To, default: &Path) -> Result<()> {
     } else {
         mesh_file::write_mesh(out, mesh)?;
     }
-    info(mesh)?;
+    info(mesh, links);
     say(format!("written to {}", out.display()));
     Ok(())
 }
 
-fn info(mesh: &Mesh) -> Result<()> {
-    let quality = Quality::of(mesh);
+fn info(mesh: &Mesh, links: &[[Link; 4]]) {
+    let (quality, counts) = (Quality::of(mesh), mesh.edge_counts());
     let (jacobian, worst) = quality.scaled_jacobian;
     let mut rows = vec![
         row("nodes", mesh.nodes.len().to_string()),
         row("cells", mesh.cells.len().to_string()),
-        row("boundary edges", mesh.edges.len().to_string()),
+        row("boundary edges", counts.iter().map(|count| count.boundary).sum::<usize>().to_string()),
         row("area", format!("{:.6e} m^2", quality.area)),
         row("h_e", format!("{:.4e} .. {:.4e} m", quality.smallest_h_e.0, quality.largest_h_e.0)),
         row("smallest h_e in", format!("cell {}", mesh.number(quality.smallest_h_e.1))),
@@ -103,10 +113,14 @@ fn info(mesh: &Mesh) -> Result<()> {
         let count = mesh.cell_group.iter().filter(|&&g| g == group).count();
         rows.push(row(format!("cells of `{name}`"), count.to_string()));
     }
-    for (group, name) in mesh.edge_groups.iter().enumerate() {
-        let count = mesh.edges.iter().filter(|edge| edge.group == group).count();
-        rows.push(row(format!("edges of `{name}`"), count.to_string()));
+    for (name, EdgeCount { inner, boundary }) in mesh.edge_groups.iter().zip(counts) {
+        let text = match (inner, boundary) {
+            (0, _) => boundary.to_string(),
+            (_, 0) => format!("{inner}, all inside of the body"),
+            _ => format!("{}, {inner} of them inside of the body", inner + boundary),
+        };
+        rows.push(row(format!("edges of `{name}`"), text));
     }
     table(&rows);
-    Ok(())
+    notices::of_mesh(mesh, links).iter().for_each(note);
 }

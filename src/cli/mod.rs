@@ -4,6 +4,7 @@ mod bench;
 mod certificates;
 mod export;
 mod mesh;
+mod notices;
 mod pipeline;
 mod preprocess;
 mod print;
@@ -20,6 +21,7 @@ use crate::error::{Error, Result};
 use crate::lane::Kernel;
 use clap::{Parser, Subcommand};
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 const AFTER_HELP: &str = "\
 All in one go:
@@ -64,11 +66,40 @@ enum Command {
     Export(export::Args),
 }
 
+/// Parses the command line of the process and runs it; the message of an error goes to standard error.
+pub fn main() -> ExitCode {
+    let outcome = match Cli::try_parse() {
+        Ok(cli) => run(cli),
+        // Help, the version, or a wrong argument, in clap's words and with its exit code, 0 or 2.
+        Err(said) => {
+            print::printed(said.print());
+            match print::all_printed() {
+                Ok(()) => return ExitCode::from(u8::try_from(said.exit_code()).unwrap_or(2)),
+                // Where a message on standard error is lost, the code of the error itself stands.
+                Err(_) if said.use_stderr() => return ExitCode::from(2),
+                Err(error) => Err(error),
+            }
+        }
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Nobody may read along: the exit code stands.
+            print::complain(&error);
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
 /// Runs a parsed command line.
 ///
 /// # Errors
 /// The one message for the user; its exit code is [`Error::exit_code`].
 pub fn run(cli: Cli) -> Result<()> {
+    command(cli).and_then(|()| print::all_printed())
+}
+
+fn command(cli: Cli) -> Result<()> {
     match cli.command {
         Command::Mesh(args) => mesh::run(&args),
         Command::Seed(args) => seed::run(&args),
@@ -122,11 +153,27 @@ impl RunArgs {
     }
 }
 
+/// Threads a core that are still taken for a wish: more are a slip of the pen, and steps wait for the last of them.
+const THREADS_PER_CORE: usize = 4;
+
+/// Refuses a number of threads that this machine has no use for.
+fn check_threads(threads: usize) -> Result<()> {
+    // A system that does not tell refuses none.
+    let cores = std::thread::available_parallelism().map_or(usize::MAX / THREADS_PER_CORE, usize::from);
+    let most = THREADS_PER_CORE * cores;
+    if (1..=most).contains(&threads) {
+        return Ok(());
+    }
+    let what = match threads {
+        0 => "--threads is 0".to_owned(),
+        _ => format!("--threads is {threads}, and this machine has {cores} core(s)"),
+    };
+    Err(Error::input(what, format!("give a number of threads from 1 to {most}; {cores} use all cores")))
+}
+
 /// Starts so many threads for all that follows.
 fn start_threads(threads: usize) -> Result<()> {
-    if threads == 0 {
-        return Err(Error::input("--threads is 0", "give a number of threads from 1"));
-    }
+    check_threads(threads)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     pool.map_err(|why| Error::input(format!("cannot start {threads} threads: {why}"), "give a smaller --threads"))
 }

@@ -66,7 +66,7 @@ impl Files {
     pub fn mesh(&self, scene: &Scene) -> Result<Mesh> {
         let Some(path) = &self.mesh else { return scene.build_mesh() };
         let mesh = build::read_mesh(path)?;
-        scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
+        scene.check_mesh(&mesh)?;
         scene.check_exact_materials(&mesh)?;
         Ok(mesh)
     }

@@ -1,8 +1,8 @@
 //! `dgmpm preprocess`: all matrices, and what the run will cost.
 
 use super::pipeline::{self, Body, Files, Store};
-use super::print::{mebibytes, row, say, seconds, table};
-use super::{SceneArgs, certificates, keep};
+use super::print::{mebibytes, note, row, say, seconds, table};
+use super::{SceneArgs, certificates, keep, notices};
 use crate::error::{Error, Result};
 use crate::io::operators_file;
 use crate::lane::Kernel;
@@ -88,9 +88,11 @@ pub fn report(
     rows.push(row("estimate", format!("{:.0} steps, {}", cost.steps, seconds(cost.seconds))));
     table(&rows);
     certificates::word(scene, body).into_iter().for_each(say);
+    let first = (cost.steps, cost.dt);
+    notices::of_run(scene, body, (scheme, state), &cost.survey, first).iter().for_each(note);
     if let Some(growth) = cfl::growth(&scheme.method, scene.scheme.degree) {
-        say(format!(
-            "note: ADER of degree {} grows weakly at any dt: {growth:.0e} a step, a factor of {:.3} over this run",
+        note(format!(
+            "ADER of degree {} grows weakly at any dt: {growth:.0e} a step, a factor of {:.3} over this run",
             scene.scheme.degree,
             (growth * cost.steps).exp()
         ));

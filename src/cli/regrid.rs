@@ -50,7 +50,7 @@ pub fn run(args: &Args) -> Result<()> {
     let scene = Scene::load(&from.scene(), &[])?;
     let old = read_body(&scene, &from, &snapshot.grid)?;
     let mesh = build::read_mesh(&args.mesh)?;
-    scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
+    scene.check_mesh(&mesh)?;
     let folder = Folder::new(&args.out.clone().unwrap_or_else(|| beside(&args.run)));
     if folder.root == from.root {
         return Err(Error::input("--out is the folder of the run itself", "give another folder"));
@@ -113,7 +113,7 @@ fn snapshot_of(from: &Folder, step: Option<usize>) -> Result<PathBuf> {
 fn read_body(scene: &Scene, from: &Folder, files: &GridFiles) -> Result<Body> {
     let mesh = mesh_file::read_mesh(&from.root.join(&files.mesh))?;
     let (cloud, more) = cloud_file::read_with(&from.root.join(&files.cloud), &mesh)?;
-    scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
+    scene.check_mesh(&mesh)?;
     let material = scene.material_of_cells(&mesh);
     Ok(Body { mesh, cloud, virtual_points: more.virtual_points, deficient: vec![], material })
 }

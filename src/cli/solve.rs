@@ -55,7 +55,7 @@ pub fn all(scene_args: &SceneArgs, files: &Files, operators: Option<&Path>, run:
     let settings = scene.settings()?;
     let body = files.body(&scene)?;
     scene.check_lines(&body.mesh)?;
-    scene.check_regrids()?;
+    scene.check_regrids(&body.mesh)?;
     if let Some(missing) = operators.filter(|path| !path.exists()) {
         return Err(Error::at(Place::file(missing), "there is no such file", "make it by `dgmpm preprocess`"));
     }

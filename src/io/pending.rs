@@ -21,6 +21,10 @@ impl Pending {
         if target.is_dir() {
             return Err(Error::output(target, "a folder of this name exists"));
         }
+        // The new file takes the place of the old one: of a device that would be the end.
+        if target.exists() && !target.is_file() {
+            return Err(Error::output(target, "it is no file but a device, a pipe or a socket"));
+        }
         if let Some(folder) = target.parent().filter(|f| !f.as_os_str().is_empty()) {
             fs::create_dir_all(folder).map_err(|e| Error::output(folder, e))?;
         }

@@ -1,5 +1,6 @@
 //! Positions of points for a cloud that ignores the grid, and fields at them: VTU (as written by `export` or meshio) or CSV.
 
+use std::cmp::Ordering;
 use std::path::Path;
 
 use vtkio::model::{Attribute, DataSet, Vtk};
@@ -22,7 +23,7 @@ pub fn read(path: &Path) -> Result<Vec<[f64; 2]>> {
 }
 
 /// Reads positions as [`read`] does, and all fields: of a VTU file those with 1, 3 or 9 components; of rows the columns
-/// behind x, y by their names, where `name_1, name_2` are a vector and `name_11, name_12, name_21, name_22` a tensor in the
+/// beside x, y (the first two, where no column has these names) by their names, where `name_1, name_2` are a vector and `name_11, name_12, name_21, name_22` a tensor in the
 /// plane.
 ///
 /// # Errors
@@ -68,24 +69,84 @@ fn vtu(path: &Path) -> Result<Found> {
 fn rows(path: &Path) -> Result<Found> {
     let text = std::fs::read_to_string(path)
         .map_err(|why| Error::at(Place::file(path), format!("cannot read the points: {why}"), REMEDY))?;
-    let (mut names, mut points, mut columns) = (Vec::new(), Vec::new(), Vec::new());
-    for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-        let words = || line.split([',', ' ', '\t']).filter(|word| !word.is_empty());
-        let numbers: Vec<f64> = words().map_while(|word| word.parse().ok()).collect();
-        let fault = |what: &str, remedy: &str| Err(Error::at(Place::line(path, number + 1, 1), what, remedy));
-        match numbers[..] {
-            [x, y, ..] if numbers.len() >= names.len() => {
-                points.push([x, y]);
-                columns.resize(names.len().saturating_sub(2), Vec::new());
-                columns.iter_mut().zip(&numbers[2..]).for_each(|(column, number)| column.push(*number));
-            }
-            [_, _, ..] => return fault("there are fewer numbers than names", "give a number under each name"),
-            _ if number == 0 => names = words().map(str::to_owned).collect(),
-            _ => return fault("this is not a point", "give x, y in m"),
+    // Spreadsheets begin UTF-8 with a mark.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let (mut names, mut numbers, mut count) = (Vec::new(), Vec::new(), None);
+    for (line, text) in text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty()) {
+        let fault = |(what, remedy): Fault| Error::at(Place::line(path, line + 1, 1), what, remedy);
+        let words = words(text).map_err(fault)?;
+        if count.is_none() && words.iter().all(|word| is_name(word)) {
+            names = words.iter().map(|word| word.trim_matches(['"', '\'']).to_owned()).collect();
+        } else {
+            let row = numbers_of(&words, &names, count.filter(|_| names.is_empty())).map_err(fault)?;
+            numbers.extend(row);
         }
+        if words.len() < 2 {
+            return Err(fault(("this is not a point".to_owned(), "give x, y in m")));
+        }
+        count = Some(words.len());
     }
-    let columns = names.into_iter().skip(2).zip(columns).collect();
-    Ok((points, fields_of(columns)))
+    let count = count.unwrap_or(2);
+    let place = place_of(&names);
+    let column = |k: usize| -> Vec<f64> { numbers.iter().skip(k).step_by(count).copied().collect() };
+    let points = numbers.chunks_exact(count).map(|row| place.map(|k| row[k])).collect();
+    let others = names.into_iter().enumerate().filter(|(k, _)| !place.contains(k));
+    Ok((points, fields_of(others.map(|(k, name)| (name, column(k))).collect())))
+}
+
+/// What is wrong with a row, and what would be right.
+type Fault = (String, &'static str);
+
+/// The entries of a row, between commas or blanks.
+fn words(row: &str) -> std::result::Result<Vec<&str>, Fault> {
+    if row.contains(';') {
+        let remedy = "separate numbers by commas or blanks, with a point before the decimals";
+        return Err(("`;` is not known as a separator".to_owned(), remedy));
+    }
+    // `# x y`, as NumPy writes names.
+    let row = row.trim().trim_start_matches('#').trim_start();
+    if !row.contains(',') {
+        return Ok(row.split_whitespace().collect());
+    }
+    let all: Vec<&str> = row.strip_suffix(',').unwrap_or(row).split(',').map(str::trim).collect();
+    match all.iter().position(|word| word.is_empty()) {
+        Some(k) => Err((format!("entry {} is empty", k + 1), "give a number in each column")),
+        None => Ok(all),
+    }
+}
+
+/// Whether a word of the first row is a name: no number, and none that is misspelt.
+fn is_name(word: &str) -> bool {
+    let first = word.trim_start_matches(['"', '\'']).chars().next();
+    word.parse::<f64>().is_err() && first.is_some_and(|first| first.is_alphabetic() || first == '_')
+}
+
+/// The numbers of a row: as many as there are names, or as the row before has.
+fn numbers_of(words: &[&str], names: &[String], before: Option<usize>) -> std::result::Result<Vec<f64>, Fault> {
+    let mut numbers = Vec::with_capacity(words.len());
+    for word in words {
+        let number = word.parse::<f64>();
+        numbers.push(number.map_err(|_| (format!("this is not a point: `{word}` is not a number"), "give x, y in m"))?);
+    }
+    let (wanted, whose) = match before {
+        _ if !names.is_empty() => (names.len(), "names"),
+        Some(count) => (count, "in the rows before"),
+        None => return Ok(numbers),
+    };
+    match numbers.len().cmp(&wanted) {
+        Ordering::Less => Err((format!("there are fewer numbers than {whose}"), "give a number under each name")),
+        Ordering::Greater => Err((format!("there are more numbers than {whose}"), "give a name above each number")),
+        Ordering::Equal => Ok(numbers),
+    }
+}
+
+/// The columns of x and y: by their names, which may be those of ParaView, else the first two.
+fn place_of(names: &[String]) -> [usize; 2] {
+    let find = |known: [&str; 2]| names.iter().position(|name| known.iter().any(|k| name.eq_ignore_ascii_case(k)));
+    match (find(["x", "Points:0"]), find(["y", "Points:1"])) {
+        (Some(x), Some(y)) => [x, y],
+        _ => [0, 1],
+    }
 }
 
 /// Columns with names as fields.
@@ -139,6 +200,50 @@ mod tests {
         assert!(read(&path).unwrap_err().to_string().contains("points.csv:2:1"));
         std::fs::write(&path, "0,inf\n").unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("point 1 is not finite"));
+    }
+
+    #[test]
+    fn no_first_row_is_lost_or_taken_for_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("points.csv");
+        let read_text = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            read(&path).map_err(|why| why.to_string())
+        };
+        let (a, b) = ([0.25, 0.5], [1.0, 2.0]);
+        // A mark, no mark; names, no names; what NumPy and ParaView write; blanks, tabs, a comma at the end.
+        for text in [
+            "0.25,0.5\n1,2\n",
+            "\u{feff}0.25,0.5\n1,2\n",
+            "\u{feff}x,y\r\n0.25,0.5\r\n1,2\r\n",
+            "\n# x y\n0.25 0.5\n1\t2\n",
+            "\"id\",\"X\",\"Y\"\n7,0.25,0.5\n8,1,2\n",
+            "\"u\",\"Points:0\",\"Points:1\",\"Points:2\"\n7,0.25,0.5,0\n7,1,2,0\n",
+            "X [m],Y [m]\n0.25, 0.5,\n1, 2,\n",
+            "0.25 0.5 3\n1 2 4\n",
+        ] {
+            assert_eq!(read_text(text), Ok(vec![a, b]), "{text:?}");
+        }
+        for (text, line, what) in [
+            ("0.25;0.5\n1,2\n", 1, "`;` is not known as a separator"),
+            ("x;y\n1;2\n", 1, "`;` is not known as a separator"),
+            ("0,25;0,5\n", 1, "`;` is not known as a separator"),
+            ("0.2z5,0.5\n1,2\n", 1, "`0.2z5` is not a number"),
+            ("0.2z5,0.z5\n1,2\n", 1, "`0.2z5` is not a number"),
+            ("-,0.5\n1,2\n", 1, "`-` is not a number"),
+            ("x,0.5\n1,2\n", 1, "`x` is not a number"),
+            ("points\n1,2\n", 1, "this is not a point"),
+            ("0.25\n1,2\n", 1, "this is not a point"),
+            ("x,y\nx,y\n1,2\n", 2, "`x` is not a number"),
+            ("x,y,a\n1,2,3\n1,,3\n", 3, "entry 2 is empty"),
+            ("x,y\n1,2,3\n", 2, "more numbers than names"),
+            ("1,2\n1,2,3\n", 2, "more numbers than in the rows before"),
+            ("1,2,3\n1,2\n", 2, "fewer numbers than in the rows before"),
+            ("1,2\n1,2 m\n", 2, "`2 m` is not a number"),
+        ] {
+            let why = read_text(text).unwrap_err();
+            assert!(why.contains(&format!("points.csv:{line}:1: ")) && why.contains(what), "{text:?}: {why}");
+        }
     }
 
     #[test]

@@ -48,6 +48,14 @@ pub enum Error {
         /// All corners.
         corners: [[f64; 2]; 4],
     },
+    /// A cell that a move of nodes would turn inside out.
+    #[error("cell {cell} with a corner at {} would be turned inside out", point(.at))]
+    Turned {
+        /// Number of the cell.
+        cell: u64,
+        /// One of its corners, after the move.
+        at: [f64; 2],
+    },
     /// An edge of more than two cells.
     #[error("the edge {} belongs to {} cells: {cells:?}", points(.at), .cells.len())]
     Crowded {
@@ -134,6 +142,7 @@ impl Error {
             Error::Inverted { .. } => {
                 "every corner must turn the same way with an angle between 0 and 180 degrees: smooth the mesh there, or mesh it finer"
             }
+            Error::Turned { .. } => "move nodes by less than a part of the smallest cell",
             Error::Crowded { .. } => "remove the cells that lie upon each other; a surface was perhaps meshed twice",
             Error::Untagged { .. } => {
                 "put every boundary edge into a group: in Gmsh add its curve to a `Physical Curve(\"name\") = {...};`"

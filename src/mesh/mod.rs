@@ -5,6 +5,7 @@ pub mod check;
 mod error;
 pub mod faces;
 pub mod map;
+pub mod parts;
 pub mod periodic;
 pub mod quality;
 mod refine;
@@ -48,6 +49,14 @@ impl Mesh {
     /// The number that messages give to a cell: that of the file, or its index from 1 where there is none.
     pub fn number(&self, cell: usize) -> u64 {
         self.original.get(cell).copied().unwrap_or(cell as u64 + 1)
+    }
+
+    /// The lower left and the upper right corner of the box around its nodes, m.
+    pub fn extent(&self) -> [[f64; 2]; 2] {
+        let start = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        self.nodes.iter().fold(start, |[low, high], x| {
+            [[low[0].min(x[0]), low[1].min(x[1])], [high[0].max(x[0]), high[1].max(x[1])]]
+        })
     }
 
     /// The two nodes of a face, in the direction of increasing parent coordinate.

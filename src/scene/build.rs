@@ -53,7 +53,7 @@ impl Scene {
             Source::Rectangle { size, cells } => mesh::rectangle(*size, *cells)?,
             Source::File(path) => read_mesh(&self.resolve(path))?,
         };
-        self.check_groups(&mesh.groups, &mesh.edge_groups)?;
+        self.check_mesh(&mesh)?;
         self.check_exact_materials(&mesh)?;
         Ok(mesh)
     }
@@ -64,7 +64,7 @@ impl Scene {
         let mut pairs: Vec<[usize; 2]> = Vec::new();
         for boundary in &self.boundaries {
             let Condition::Periodic { partner } = &boundary.condition else { continue };
-            // `check_groups` has refused groups that the mesh lacks.
+            // `check_mesh` has refused groups that the mesh lacks.
             let (Some(a), Some(b)) = (number(&boundary.group), number(partner)) else { continue };
             if !pairs.contains(&[b, a]) {
                 pairs.push([a, b]);
@@ -84,7 +84,7 @@ impl Scene {
     /// The number of the `[[material]]` of each cell.
     pub fn material_of_cells(&self, mesh: &Mesh) -> Vec<usize> {
         let of_group = |group: &String| self.materials.iter().position(|m| m.group.as_ref().is_none_or(|g| g == group));
-        // `check_groups` has refused groups without a material.
+        // `check_mesh` has refused groups without a material.
         let numbers: Vec<usize> = mesh.groups.iter().map(|group| of_group(group).unwrap_or(0)).collect();
         mesh.cell_group.iter().map(|&group| numbers[group]).collect()
     }
@@ -135,7 +135,7 @@ impl Scene {
     /// The scheme.
     pub fn build_scheme(&self, mesh: &Mesh, operators: Operators, kernel: Kernel) -> Scheme {
         let condition = |group: &String| self.boundaries.iter().find(|b| b.group == *group).map(condition);
-        // `check_groups` has refused groups without a condition; no face looks at that of a periodic group.
+        // `check_mesh` has refused groups without a condition; no face looks at that of a periodic group.
         let free = || Box::new(boundary::Free) as Box<dyn boundary::Boundary>;
         let boundaries = mesh.edge_groups.iter().map(|group| condition(group).unwrap_or_else(free)).collect();
         let control = |relax, alpha| Control { relax, rate: alpha * self.scheme.degree as f64 };
@@ -167,6 +167,16 @@ impl Scene {
     fn source(&self, source: &scene::Source) -> Box<dyn source::Source> {
         let named = |m: &scene::Material| source.group.is_some() && m.group == source.group;
         Box::new(BodyForce { value: pair(&source.value), material: self.materials.iter().position(named) })
+    }
+
+    /// The speeds that conditions prescribe: the group, and one component (along N) or both, m/s.
+    pub fn prescribed_speeds(&self) -> Vec<(&str, Vec<Data>)> {
+        let of = |boundary: &Boundary| match &boundary.condition {
+            Condition::Wall { speed } => vec![data(speed)],
+            Condition::Velocity(value) => pair(value).to_vec(),
+            _ => vec![],
+        };
+        self.boundaries.iter().map(|boundary| (boundary.group.as_str(), of(boundary))).collect()
     }
 
     /// The initial state: F and p at the grid nodes from the scene's expressions, from its exact solution, or from the
@@ -205,14 +215,15 @@ impl Scene {
     }
 
     pub(super) fn check_initial(&self, f: [f64; 4], v: [f64; 2], x: [f64; 2], cell: u64) -> Result<()> {
-        let at = format!("at ({}, {}) in cell {cell}", x[0], x[1]);
+        // Called for every node: no text is made before there is an error.
+        let at = || format!("at ({}, {}) in cell {cell}", x[0], x[1]);
         if v.iter().any(|v| !v.is_finite()) {
-            let what = format!("the initial velocity {at} is ({}, {})", v[0], v[1]);
+            let what = format!("the initial velocity {} is ({}, {})", at(), v[0], v[1]);
             return Err(self.error("initial.velocity", what, "give expressions that are finite all over the body"));
         }
         let j = tensor::det(f);
         if f.iter().any(|f| !f.is_finite()) || j <= 0.0 {
-            let what = format!("the initial deformation gradient {at} has J = {j}");
+            let what = format!("the initial deformation gradient {} has J = {j}", at());
             return Err(self.error("initial.deformation", what, "give expressions with F11 F22 - F12 F21 > 0"));
         }
         Ok(())

@@ -38,12 +38,12 @@ impl Scene {
                 mesh::rectangle(size, cells)?
             }
             NewMesh::Refine(k) => now.refined(*k),
-            NewMesh::Coarsen(k) => self.coarsened(now, *k).map_err(|what| {
-                self.error(&key("coarsen"), what, "coarsen grids of lines whose numbers of cells are multiples of it")
-            })?,
-            NewMesh::Shift(by) => shifted(now, *by).map_err(|why| {
-                self.error(&key("shift"), why.to_string(), "shift by less than a part of the smallest cell")
-            })?,
+            NewMesh::Coarsen(k) => self.coarsened(rule, now, *k)?,
+            // There and back: nodes that went the same way each time would leave their cells.
+            NewMesh::Shift(by) => {
+                let sign = if count.is_multiple_of(2) { 1.0 } else { -1.0 };
+                shifted(now, by.map(|by| sign * by)).map_err(|turned| self.too_far(rule, &turned))?
+            }
             NewMesh::Strips(strips) => self.with_strips(strips, present).map_err(|what| {
                 self.error(
                     &key("strips"),
@@ -54,18 +54,30 @@ impl Scene {
             NewMesh::Geometry { path, size } => gmsh(&self.resolve(path), size.as_ref(), now, time)
                 .map_err(|(what, remedy)| self.error(&key("geo"), what, remedy))?,
         };
-        self.check_groups(&mesh.groups, &mesh.edge_groups)?;
+        self.check_mesh(&mesh)?;
         self.check_exact_materials(&mesh)?;
         Ok(mesh)
     }
 
-    /// Looks at the mesh files of all `[[regrid]]` before the first step.
+    /// A shift that turns a cell inside out.
+    fn too_far(&self, rule: usize, turned: &mesh::Error) -> Error {
+        let remedy = "shift by a part of the smallest cell; each second time the nodes go back";
+        self.error(&format!("regrid.{rule}.shift"), turned.to_string(), remedy)
+    }
+
+    /// Looks at the mesh files of all `[[regrid]]` before the first step, and at shifts of `first`, the mesh of the start.
     ///
     /// # Errors
-    /// A file that cannot be read, or whose groups are not those of the scene.
-    pub fn check_regrids(&self) -> Result<()> {
+    /// A file that cannot be read, or whose groups are not those of the scene; a shift that is too far.
+    pub fn check_regrids(&self, first: &Mesh) -> Result<()> {
+        // Another rule may change the cells before one is due that changes them further.
+        let alone = self.regrids.len() == 1;
         for (rule, regrid) in self.regrids.iter().enumerate() {
             match &regrid.grid {
+                NewMesh::Shift(by) if alone => {
+                    shifted(first, *by).map_err(|turned| self.too_far(rule, &turned))?;
+                }
+                NewMesh::Coarsen(k) if alone => drop(self.coarsened(rule, first, *k)?),
                 NewMesh::Files(files) => {
                     for file in files {
                         let mesh = read_mesh(&self.resolve(file))?;
@@ -76,7 +88,7 @@ impl Scene {
                                 "give meshes of the same body with the same groups",
                             )
                         };
-                        self.check_groups(&mesh.groups, &mesh.edge_groups).map_err(here)?;
+                        self.check_mesh(&mesh).map_err(here)?;
                     }
                 }
                 NewMesh::Geometry { path, .. } => {
@@ -120,18 +132,11 @@ impl Scene {
         all.map_or(f64::INFINITY, |all| all.iter().map(|c| c.lebesgue).fold(0.0, f64::max))
     }
 
-    fn coarsened(&self, mesh: &Mesh, k: usize) -> std::result::Result<Mesh, String> {
-        let lines = TensorGrid::of(mesh).filter(|_| mesh.groups.len() == 1);
-        let lines = lines.ok_or("the present mesh is not a grid of lines of one group")?.lines;
-        let thin = |lines: &[f64]| -> std::result::Result<Vec<f64>, String> {
-            let cells = lines.len() - 1;
-            if !cells.is_multiple_of(k) {
-                return Err(format!("{cells} cells cannot be joined by {k}"));
-            }
-            Ok(lines.iter().step_by(k).copied().collect())
-        };
-        let [x, y] = &lines;
-        grid_of_lines(mesh, [thin(x)?, thin(y)?])
+    fn coarsened(&self, rule: usize, mesh: &Mesh, k: usize) -> Result<Mesh> {
+        joined(mesh, k).map_err(|what| {
+            let remedy = "coarsen grids of lines whose numbers of cells are multiples of it";
+            self.error(&format!("regrid.{rule}.coarsen"), what, remedy)
+        })
     }
 
     /// The scene's own mesh with finer strips. Lines of it stay, so that most cells are those of the last grid.
@@ -155,6 +160,21 @@ impl Scene {
         }
         grid_of_lines(&base, lines)
     }
+}
+
+/// k x k cells of a grid of lines joined into one.
+fn joined(mesh: &Mesh, k: usize) -> std::result::Result<Mesh, String> {
+    let lines = TensorGrid::of(mesh).filter(|_| mesh.groups.len() == 1);
+    let lines = lines.ok_or("the present mesh is not a grid of lines of one group")?.lines;
+    let thin = |lines: &[f64]| -> std::result::Result<Vec<f64>, String> {
+        let cells = lines.len() - 1;
+        if !cells.is_multiple_of(k) {
+            return Err(format!("{cells} cells cannot be joined by {k}"));
+        }
+        Ok(lines.iter().step_by(k).copied().collect())
+    };
+    let [x, y] = &lines;
+    grid_of_lines(mesh, [thin(x)?, thin(y)?])
 }
 
 /// Lines with intervals that meet the open interval `within` cut into `factor` equal ones.
@@ -225,9 +245,7 @@ fn shifted(mesh: &Mesh, by: [f64; 2]) -> std::result::Result<Mesh, mesh::Error> 
     // A node that leaves its cells may leave them all counter-clockwise: turned cells are refused, too.
     let turned = (0..out.cells.len()).find(|&cell| map::h_e(&out.corners(cell)) <= 0.0);
     match turned {
-        Some(cell) => {
-            Err(mesh::Error::Inconsistent { what: format!("cell {} would be turned inside out", out.number(cell)) })
-        }
+        Some(cell) => Err(mesh::Error::Turned { cell: out.number(cell), at: out.corners(cell)[0] }),
         None => out.checked(),
     }
 }

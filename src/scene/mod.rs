@@ -1,7 +1,7 @@
 //! The scene file: what is to be computed, as plain data, parsed and checked.
 //!
 //! [`Scene::load`] reads TOML, applies the overrides of `--set`, and checks types, ranges and names; what needs the
-//! mesh is checked by [`Scene::check_groups`]. Every message has file, line and column (or the `--set` at fault)
+//! mesh is checked by [`Scene::check_mesh`]. Every message has file, line and column (or the `--set` at fault)
 //! and lists what exists. A scene knows neither mesh nor solver: names become types elsewhere. Units are SI.
 
 pub mod build;

@@ -1,12 +1,14 @@
 //! The outputs of a scene: kind, when, fields.
 
 use super::reader::{Check, FINITE, POSITIVE, Reader};
+use super::regrid::{Criteria, NewMesh, Regrid};
 use super::{Field, Output, Scene, What, When};
 use crate::error::Result;
 use crate::material::Law;
 
 impl Scene {
-    /// What is odd and no error: outputs that lie after the end of the run, as after `--set time.end=..`.
+    /// What is odd and no error: outputs that lie after the end of the run, as after `--set time.end=..`; a grid that is
+    /// refined or coarsened without an end.
     pub fn warnings(&self) -> Vec<String> {
         let end = self.end;
         let warning = |(i, output): (usize, &Output)| {
@@ -26,7 +28,18 @@ impl Scene {
             };
             Some(format!("{}`{key}` of output \"{}\": {what}", self.place(&format!("output.{i}.{key}")), output.name))
         };
-        self.outputs.iter().enumerate().filter_map(warning).collect()
+        let again = |(rule, regrid): (usize, &Regrid)| {
+            let key = match regrid.grid {
+                NewMesh::Refine(_) => "refine",
+                NewMesh::Coarsen(_) => "coarsen",
+                _ => return None,
+            };
+            let once = matches!(&regrid.when, When::At(_)) || regrid.criteria != Criteria::default();
+            let place = self.place(&format!("regrid.{rule}.{key}"));
+            (!once).then(|| format!("{place}`{key}` changes the cells that are there, again each time that it is due"))
+        };
+        let outputs = self.outputs.iter().enumerate().filter_map(warning);
+        outputs.chain(self.regrids.iter().enumerate().filter_map(again)).collect()
     }
 }
 

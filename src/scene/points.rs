@@ -48,14 +48,18 @@ pub(super) fn cloud(table: Option<&mut Reader>, degree: usize) -> Result<(Cloud,
     let (default, mut limits) = (Cloud { layout, per_direction: degree + 1 }, Limits::of_degree(degree));
     let Some(table) = table else { return Ok((default, limits)) };
     let pattern = table.choice("layout", &PATTERNS, &[])?;
-    let cloud = match pattern {
-        Some(Pattern::File) => {
-            let path = table.text("path")?;
-            let path =
-                path.ok_or_else(|| table.missing("path", "the file of the points, for instance \"cloud.vtu\""))?;
-            Cloud { layout: Layout::File(PathBuf::from(path)), ..default }
+    let path = table.text("path")?;
+    let cloud = match (pattern, path) {
+        // A path says that the points come from a file.
+        (Some(Pattern::File) | None, Some(path)) => Cloud { layout: Layout::File(PathBuf::from(path)), ..default },
+        (Some(Pattern::File), None) => {
+            return Err(table.missing("path", "the file of the points, for instance \"cloud.vtu\""));
         }
-        _ => points(table, pattern, default, degree)?,
+        (Some(_), Some(_)) => {
+            let remedy = "give layout = \"file\" (the default where there is a path), or remove `path`";
+            return Err(table.wrong("path", "[cloud] has a `path` and another `layout`", remedy));
+        }
+        (_, None) => points(table, pattern, default, degree)?,
     };
     if let Some(limit) = table.number("face_lebesgue", AT_LEAST_ONE)? {
         limits = Limits { lebesgue: limit, lattices: true, ..limits };

@@ -13,6 +13,7 @@ const FLAT: f64 = 1e-10;
 /// The mesh of the quadrilaterals of a file, checked and oriented.
 pub fn mesh(mut raw: Raw) -> Result<Mesh, Error> {
     usable(&raw)?;
+    tagged(&raw)?;
     raw.quads.sort_by_key(|quad| quad.number);
     distinct(&raw)?;
     let (nodes, cells) = nodes(&mut raw)?;
@@ -41,6 +42,22 @@ fn usable(raw: &Raw) -> Result<(), Error> {
         Some((kind, count, first)) => Err(Error::Element { kind, count, first }),
         None => Ok(()),
     }
+}
+
+/// Refuses a file of MSH 2.2 that names groups of lines or surfaces and has no element in any of them.
+fn tagged(raw: &Raw) -> Result<(), Error> {
+    let names: Vec<String> = raw
+        .names
+        .iter()
+        .filter(|((dimension, _), _)| [1, 2].contains(dimension))
+        .map(|(_, name)| format!("`{name}`"))
+        .collect();
+    let none = raw.quads.iter().all(|quad| quad.group == 0) && raw.lines.iter().all(|line| line.group == 0);
+    let count = raw.quads.len() + raw.lines.len();
+    if raw.entities || names.is_empty() || count == 0 || !none {
+        return Ok(());
+    }
+    Err(Error::NoTags { count, names })
 }
 
 /// Refuses numbers and quadrilaterals that are given twice. MSH 2.2 repeats an element for each of its physical groups.

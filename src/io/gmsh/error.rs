@@ -88,6 +88,14 @@ pub enum Error {
         /// Number of the first.
         first: u64,
     },
+    /// Elements that all have the physical tag 0, in a file that names physical groups.
+    #[error("the file names the physical groups {}, but all its {count} lines and quadrilaterals have the physical tag 0", .names.join(", "))]
+    NoTags {
+        /// How many elements.
+        count: usize,
+        /// Names of the groups.
+        names: Vec<String>,
+    },
     /// Lines of physical curves that are no edge of any quadrilateral.
     #[error(
         "{count} line(s) of physical curve `{name}` are not an edge of any quadrilateral, the first is element {first}"
@@ -129,6 +137,9 @@ impl Error {
             Error::RepeatedElement(..) => "mesh each surface once and keep it in one `Physical Surface` only",
             Error::NoGroup { .. } => {
                 "add their surfaces to a `Physical Surface(\"name\") = {...};`, or define none at all (then all cells are `body`)"
+            }
+            Error::NoTags { .. } => {
+                "MSH 2.2 with `Mesh.SaveAll = 1` loses the groups: save it with `Mesh.SaveAll = 0;`, or as MSH 4.1 (`Mesh.MshFileVersion = 4.1;`)"
             }
             Error::Stray { .. } => {
                 "take the curve out of the physical curve, or mesh the surface beside it with quadrilaterals"

@@ -44,6 +44,8 @@ pub fn parse(bytes: &[u8]) -> std::result::Result<Mesh, Error> {
 struct Raw {
     /// Names of physical groups by dimension and tag, in the order of tags.
     names: std::collections::BTreeMap<(i32, i32), String>,
+    /// Whether groups are those of entities (MSH 4.1), and not tags of the elements (MSH 2.2).
+    entities: bool,
     /// Whether any physical surface is defined.
     surfaces: bool,
     /// Number and coordinates of each node.

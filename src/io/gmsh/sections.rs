@@ -15,7 +15,7 @@ enum Version {
 pub fn read(bytes: &[u8]) -> Result<Raw, Error> {
     let mut source = Source::new(bytes);
     let version = header(&mut source)?;
-    let mut raw = Raw::default();
+    let mut raw = Raw { entities: version == Version::V41, ..Raw::default() };
     let mut entities = None;
     let (mut nodes, mut elements) = (false, false);
     while !source.at_end() {
@@ -29,7 +29,8 @@ pub fn read(bytes: &[u8]) -> Result<Raw, Error> {
             ("PartitionedEntities", Version::V41) => {
                 v41::partitioned_entities(&mut source, &mut raw, entities.get_or_insert_default())?;
             }
-            ("Nodes", Version::V22) => v22::nodes(&mut source, &mut raw)?,
+            ("Nodes", Version::V22) => v22::nodes(&mut source, &mut raw, false)?,
+            ("ParametricNodes", Version::V22) => v22::nodes(&mut source, &mut raw, true)?,
             ("Nodes", Version::V41) => v41::nodes(&mut source, &mut raw)?,
             ("Elements", Version::V22) => v22::elements(&mut source, &mut raw)?,
             ("Elements", Version::V41) => v41::elements(&mut source, &mut raw, &entities.take().unwrap_or_default())?,
@@ -38,7 +39,7 @@ pub fn read(bytes: &[u8]) -> Result<Raw, Error> {
                 continue;
             }
         }
-        nodes |= name == "Nodes";
+        nodes |= name == "Nodes" || name == "ParametricNodes";
         elements |= name == "Elements";
         end(&mut source, &name)?;
     }
@@ -94,8 +95,11 @@ fn section(source: &mut Source) -> Result<String, Error> {
         [b'$', name @ ..] if !name.is_empty() && !name.starts_with(b"End") => {
             let name = String::from_utf8_lossy(name).into_owned();
             // The line's end belongs to the name: in a binary file numbers follow at once.
-            let wrong = source.wrong(format!("the end of the line after `${name}`"));
-            if source.line().is_empty() { Ok(name) } else { Err(wrong) }
+            if source.line().is_empty() {
+                return Ok(name);
+            }
+            // Only now: the place of an error is found by counting all lines before it.
+            Err(source.wrong(format!("the end of the line after `${name}`")))
         }
         _ => Err(source.wrong("a section such as `$Nodes`")),
     }

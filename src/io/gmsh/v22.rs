@@ -5,10 +5,12 @@ use super::kinds::{Kind, LINE, QUAD};
 use super::source::Source;
 use super::{Element, Raw};
 
-/// `number-of-nodes`, then `number x y z` each.
-pub fn nodes(source: &mut Source, raw: &mut Raw) -> Result<(), Error> {
+/// `number-of-nodes`, then `number x y z` each; in `$ParametricNodes` (`Mesh.SaveParametric = 1`) with `dimension entity`
+/// behind them, and as many parameters as the entity is a curve (1) or a surface (2).
+pub fn nodes(source: &mut Source, raw: &mut Raw, parametric: bool) -> Result<(), Error> {
     let count = source.number("the number of nodes")?;
-    let count = source.fits(count, 4, 4 + 3 * 8, "nodes")?;
+    let more = if parametric { 2 } else { 0 };
+    let count = source.fits(count, 4 + more, 4 + 3 * 8 + 4 * more, "nodes")?;
     source.line();
     raw.nodes.reserve(count);
     for _ in 0..count {
@@ -18,6 +20,24 @@ pub fn nodes(source: &mut Source, raw: &mut Raw) -> Result<(), Error> {
             *x = source.double("a coordinate")?;
         }
         raw.nodes.push((number, x));
+        if parametric {
+            parameters(source)?;
+        }
+    }
+    Ok(())
+}
+
+/// What a parametric node has behind its coordinates; nothing of it is kept.
+fn parameters(source: &mut Source) -> Result<(), Error> {
+    let count = match source.int("the dimension of an entity")? {
+        0 | 3 => 0,
+        1 => 1,
+        2 => 2,
+        _ => return Err(source.wrong("a dimension from 0 to 3")),
+    };
+    source.int("the tag of an entity")?;
+    for _ in 0..count {
+        source.double("a parameter of a node")?;
     }
     Ok(())
 }

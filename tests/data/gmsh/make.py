@@ -108,6 +108,22 @@ pair((1, 1), (2, 2))
 gmsh.model.mesh.removeDuplicateNodes()
 save({"hanging_node": 4.1})
 
+for name, binary in (("parametric_22", 0), ("parametric_22_binary", 1)):
+    start()
+    lines, surface = rectangle(cells=(3, 3))
+    for tag, (line, side) in enumerate(zip(lines, ("bottom", "right", "top", "left")), 1):
+        gmsh.model.addPhysicalGroup(1, [line], tag, side)
+    gmsh.model.addPhysicalGroup(2, [surface], 5, "body")
+    gmsh.model.mesh.generate(2)
+    save({name: 2.2}, SaveParametric=1, Binary=binary)
+
+start()
+lines, surface = rectangle(cells=(3, 3))
+gmsh.model.addPhysicalGroup(1, lines, 1, "a")
+gmsh.model.addPhysicalGroup(2, [surface], 2, "body")
+gmsh.model.mesh.generate(2)
+save({"save_all_22": 2.2}, SaveAll=1)
+
 start()
 lines, surface = rectangle()
 gmsh.model.geo.translate([(2, surface)], 0, 0, 1)

@@ -1,0 +1,146 @@
+//! What is no error and yet seldom meant: parts that do not see each other, groups inside of the body, numbers that look like
+//! other units.
+
+use super::pipeline::Body;
+use crate::boundary::Data;
+use crate::mesh::parts::{EdgeCount, Part, parts};
+use crate::mesh::{BoundaryEdge, Link, Mesh};
+use crate::operators::{Blocks, Neighbour};
+use crate::scene::Scene;
+use crate::state::State;
+use crate::step::{Scheme, Survey};
+
+/// Parts that a list names before it only counts.
+const NAMED: usize = 4;
+
+/// A body that is longer than this, m, was probably drawn in mm.
+const LONG: f64 = 1000.0;
+
+/// The notices of a mesh alone.
+pub fn of_mesh(mesh: &Mesh, links: &[[Link; 4]]) -> Vec<String> {
+    let behind = |cell: usize| links[cell].iter().filter_map(Link::cell);
+    let mut all: Vec<String> = in_parts(mesh, &parts(mesh.cells.len(), behind)).into_iter().collect();
+    all.extend(partly_inside(mesh, &mesh.edge_counts(), "these need a group of their own to have a condition"));
+    all.extend(large(mesh));
+    all
+}
+
+/// The notices before a run: those of its mesh, whose periodic boundaries connect, and of its start and first step, s.
+pub fn of_run(
+    scene: &Scene,
+    body: &Body,
+    (scheme, state): (&Scheme, &State),
+    survey: &Survey,
+    (steps, dt): (f64, f64),
+) -> Vec<String> {
+    let (mesh, blocks) = (&body.mesh, &scheme.operators.blocks);
+    let mut all: Vec<String> =
+        in_parts(mesh, &parts(mesh.cells.len(), |cell| behind(blocks, cell))).into_iter().collect();
+    // Groups with a condition and edges inside have been refused.
+    all.extend(partly_inside(mesh, &mesh.edge_counts(), "these have no [[boundary]] and are free"));
+    all.extend(large(mesh));
+    all.extend(fast_start(mesh, scheme, state, survey));
+    all.extend(fast_boundary(scene, mesh, scheme));
+    if steps <= 1.0 {
+        all.push(format!(
+            "the run is one step: it ends {:.3e} s after its start, and a step is {dt:.3e} s; times are in s, moduli in Pa, \
+             densities in kg/m^3, lengths in m",
+            scene.end - state.time
+        ));
+    }
+    all
+}
+
+/// The cells behind the faces of a cell.
+fn behind(blocks: &Blocks, cell: usize) -> Vec<usize> {
+    let (block, lane) = blocks.slot[cell];
+    let of_face = |lanes: &[Neighbour; crate::lane::LANES]| match lanes[lane] {
+        Neighbour::Cell(across) | Neighbour::Interface(across, _) => Some(blocks.cells[across.face / 4][across.lane]),
+        Neighbour::Boundary(_) | Neighbour::Padding => None,
+    };
+    blocks.neighbours[block].iter().filter_map(of_face).collect()
+}
+
+fn in_parts(mesh: &Mesh, parts: &[Part]) -> Option<String> {
+    if parts.len() < 2 {
+        return None;
+    }
+    let word = |part: &Part| format!("{} cell(s) with cell {}", part.cells, mesh.number(part.first));
+    let mut list: Vec<String> = parts.iter().take(NAMED).map(word).collect();
+    if parts.len() > NAMED {
+        list.push(format!("and {} more", parts.len() - NAMED));
+    }
+    Some(format!(
+        "the mesh has {} parts that share no edge and do not see each other, there is no contact between them: {}; parts of \
+         one body must share their nodes (in Gmsh `Coherence;`, or `Coherence Mesh;` after meshing)",
+        parts.len(),
+        list.join(", ")
+    ))
+}
+
+/// A word on each group that is a boundary with some of its edges only; `rest` says what is with these.
+fn partly_inside(mesh: &Mesh, counts: &[EdgeCount], rest: &str) -> Vec<String> {
+    let partly = |(_, count): &(usize, &EdgeCount)| count.inner > 0 && count.boundary > 0;
+    let word = |(group, count): (usize, &EdgeCount)| {
+        format!(
+            "the group `{}` lies partly inside of the body: {} edge(s) inside, where it is no boundary, and {} boundary \
+             edge(s); {rest}",
+            mesh.edge_groups[group], count.inner, count.boundary
+        )
+    };
+    counts.iter().enumerate().filter(partly).map(word).collect()
+}
+
+fn large(mesh: &Mesh) -> Option<String> {
+    let [low, high] = mesh.extent();
+    let size = [0, 1].map(|axis| high[axis] - low[axis]);
+    (size[0].max(size[1]) > LONG)
+        .then(|| format!("the body is {:e} m x {:e} m large: lengths are in m", size[0], size[1]))
+}
+
+/// The first cell at whose nodes |v| is most above the wave speed.
+fn fast_start(mesh: &Mesh, scheme: &Scheme, state: &State, survey: &Survey) -> Option<String> {
+    let (blocks, n) = (&scheme.operators.blocks, scheme.operators.nodes());
+    let unknowns = state.unpack(blocks, n);
+    let mut worst = (1.0, None);
+    for (cell, u) in unknowns.chunks_exact(state.components * n).enumerate() {
+        let (block, lane) = blocks.slot[cell];
+        let density = scheme.laws[blocks.material[block]].density();
+        let c = survey.speed[block].0[lane];
+        let v = (0..n).map(|a| u[4 * n + a].hypot(u[5 * n + a]) / density).fold(0.0, f64::max);
+        if v > worst.0 * c {
+            worst = (v / c, Some((cell, v, c)));
+        }
+    }
+    worst.1.map(|(cell, v, c)| {
+        let cell = mesh.number(cell);
+        format!("the initial velocity is {v:.4e} m/s in cell {cell}, above the wave speed there, {c:.4e} m/s; {SPEEDS}")
+    })
+}
+
+const SPEEDS: &str = "velocities are in m/s, moduli in Pa, densities in kg/m^3";
+
+/// Conditions that prescribe a speed above all wave speeds of the unstrained body: at the start, half-way or at the end of
+/// the run, at the middles of its edges.
+fn fast_boundary(scene: &Scene, mesh: &Mesh, scheme: &Scheme) -> Vec<String> {
+    let speed = |law: &crate::material::Law| law.largest_speeds([1.0, 0.0, 0.0, 1.0], &law.virgin())[0];
+    let c = scheme.laws.iter().map(speed).fold(0.0, f64::max);
+    let times = [scene.start, 0.5 * (scene.start + scene.end), scene.end];
+    let mut all = Vec::new();
+    for (name, components) in scene.prescribed_speeds() {
+        let largest = |edge: &BoundaryEdge| {
+            let [a, b] = mesh.face_nodes(edge.cell, edge.face).map(|node| mesh.nodes[node]);
+            let x = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+            let at = |t: f64| components.iter().map(|data: &Data| data(x, t)).fold(0.0, f64::hypot);
+            times.map(at).into_iter().fold(0.0, f64::max)
+        };
+        let edges = mesh.edges.iter().filter(|edge| mesh.edge_groups[edge.group] == name);
+        let v = edges.map(largest).fold(0.0, f64::max);
+        if v > c {
+            all.push(format!(
+                "the speed of the boundary `{name}` is {v:.4e} m/s, above the wave speed {c:.4e} m/s; {SPEEDS}"
+            ));
+        }
+    }
+    all
+}
