@@ -5,9 +5,9 @@
 use dgmpm::bench::{Domain, Problem, Setup};
 use dgmpm::cloud::{Locator, Pattern, from_points};
 use dgmpm::lane::{F8, Kernel, Lanes, Work, load_array, store_array};
-use dgmpm::material::{LinearElastic, Material, NeoHookean};
+use dgmpm::material::{Law, LinearElastic, Material, NeoHookean};
 use dgmpm::mesh::map;
-use dgmpm::riemann::{Acoustic, AcousticCurl, Riemann, Rusanov, Trace};
+use dgmpm::riemann::{Medium, Acoustic, AcousticCurl, Riemann, Rusanov, Trace};
 use dgmpm::scene::Method;
 use dgmpm::step::{Survey, Work as Memory};
 use divan::{Bencher, black_box, counter::ItemsCount};
@@ -56,11 +56,12 @@ impl<R: Riemann> Work for Fluxes<'_, R> {
     fn run<L: Lanes>(self) {
         let n = [L::splat(0.6), L::splat(0.8)];
         let speeds = [L::splat(5875.0), L::splat(3140.0)];
+        let medium = Medium::new(&Law::NeoHookean(NeoHookean::new(2e11, 0.3, 7800.0)), 2).splat::<L>();
         for (f, out) in self.1.as_chunks::<4>().0.iter().zip(self.2.as_chunks_mut::<6>().0) {
             let f = load_array::<L, 4>(f);
             let minus = Trace { f, v: [f[1], f[2]], t: [f[0], f[3]], c: speeds };
             let plus = Trace { f, v: [f[2], f[1]], t: [f[3], f[0]], c: speeds };
-            store_array(self.0.flux(&minus, &plus, n, L::splat(7800.0)), out);
+            store_array(self.0.flux(&minus, &plus, n, &medium), out);
         }
     }
 }

@@ -13,9 +13,9 @@ pub struct Wall {
     pub speed: Option<Data>,
 }
 
-/// What the jump of F to its image counts. A J2 bar at 227 m/s loses J > 0 in the corner of two walls (S3, S4) with 1, and holds
-/// with 3, where least energy is left in motion.
-const IMAGE: f64 = 3.0;
+/// What the jump of F to its image counts. With 1 a J2 bar at 227 m/s loses J > 0 in the corner of two walls (S3, S4); 3 is
+/// beyond the step limit between walls.
+const IMAGE: f64 = 2.0;
 
 impl Boundary for Wall {
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, times: &[TimeNode]) -> [f64; 6] {

@@ -6,7 +6,7 @@ use crate::boundary::Data;
 use crate::mesh::parts::{EdgeCount, Part, parts};
 use crate::mesh::{BoundaryEdge, Link, Mesh};
 use crate::operators::{Blocks, Neighbour};
-use crate::scene::Scene;
+use crate::scene::{Curl, Scene};
 use crate::state::State;
 use crate::step::{Scheme, Survey};
 
@@ -41,6 +41,13 @@ pub fn of_run(
     all.extend(large(mesh));
     all.extend(fast_start(mesh, scheme, state, survey));
     all.extend(fast_boundary(scene, mesh, scheme));
+    if matches!(scene.curl, Curl::Lcf { .. }) {
+        all.push(
+            "[curl] control = \"lcf\" makes energy on free, thin, soft and plastic bodies; it is there for comparison, the \
+             default is \"rotation\""
+                .to_owned(),
+        );
+    }
     if steps <= 1.0 {
         all.push(format!(
             "the run is one step: it ends {:.3e} s after its start, and a step is {dt:.3e} s; times are in s, moduli in Pa, \
@@ -106,7 +113,7 @@ fn fast_start(mesh: &Mesh, scheme: &Scheme, state: &State, survey: &Survey) -> O
     for (cell, u) in unknowns.chunks_exact(state.components * n).enumerate() {
         let (block, lane) = blocks.slot[cell];
         let density = scheme.laws[blocks.material[block]].density();
-        let c = survey.speed[block].0[lane];
+        let c = survey.speed[block].fastest.0[lane];
         let v = (0..n).map(|a| u[4 * n + a].hypot(u[5 * n + a]) / density).fold(0.0, f64::max);
         if v > worst.0 * c {
             worst = (v / c, Some((cell, v, c)));

@@ -40,11 +40,16 @@ pub struct Medium<L> {
     pub share: L,
 }
 
+/// theta by degree, measured. The one-step scheme at .9 of its step limit grows below .72, .45, .35 (N = 1, 2, 3). Less of it
+/// keeps more of the work done on a body with corners (bracket of 260 cells, S2: work 4.6, 6 and 8 % above finite elements with
+/// .5, .75 and 1); odd degrees lose accuracy in smooth flow by it (manufactured problem, N = 3: 1.6e-5, 2.0e-5, 2.9e-5 with 1,
+/// .75, .5), even ones do not; a J2 bar at N = 4 makes energy with .5.
+const SHARE: [f64; 7] = [1.0, 1.0, 0.5, 1.0, 0.75, 1.0, 0.75];
+
 impl Medium<f64> {
     /// That of a law in a scheme of degree N.
     pub fn new(law: &Law, degree: usize) -> Self {
-        // The least that the one-step scheme takes at its step limit, with a margin: N = 1 grows below .72, N = 2 below .48.
-        let share = if degree <= 1 { 0.75 } else { 0.5 };
+        let share = SHARE[degree.min(SHARE.len() - 1)];
         let (density, shear_impedance) = (law.density(), (law.density() * law.shear_modulus()).sqrt());
         Self { density, shear_impedance, share }
     }
@@ -53,11 +58,7 @@ impl Medium<f64> {
     #[inline(always)]
     pub fn splat<L: Lane>(&self) -> Medium<L> {
         let [density, shear_impedance, share] = [self.density, self.shear_impedance, self.share];
-        Medium {
-            density: L::splat(density),
-            shear_impedance: L::splat(shear_impedance),
-            share: L::splat(share),
-        }
+        Medium { density: L::splat(density), shear_impedance: L::splat(shear_impedance), share: L::splat(share) }
     }
 }
 

@@ -213,13 +213,13 @@ pub struct Source {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Curl {
-    /// Relaxed locally curl-free projection, theta = 1 - exp(-alpha N c_p dt / h).
-    Lcf {
+    /// Rotation and deviator of F - Pi F, at a rate tied to compression; the default.
+    Rotation {
         /// alpha; default 3, from N = 4 on 6.
         alpha: f64,
     },
-    /// Rotation and deviator of F - Pi F, at a rate tied to compression.
-    Rotation {
+    /// Relaxed locally curl-free projection, theta = 1 - exp(-alpha N c_p dt / h); makes energy, for comparison.
+    Lcf {
         /// alpha; default 3, from N = 4 on 6.
         alpha: f64,
     },
@@ -236,7 +236,7 @@ pub struct Scheme {
     pub degree: usize,
     /// N_T, degree in time, 0 to 6; default N.
     pub time_degree: usize,
-    /// The flux on inner faces; default rusanov.
+    /// The flux on inner faces; default dual.
     pub flux: Flux,
     /// The size of a step.
     pub step: Step,

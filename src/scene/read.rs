@@ -90,7 +90,7 @@ fn scheme(table: &mut Reader) -> Result<Scheme> {
     let method = table.choice("method", Method::NAMES, &[])?;
     let degree = table.integer("degree", 0..=6)?;
     let time_degree = table.integer("time_degree", 0..=6)?;
-    let flux = table.choice("flux", Flux::NAMES, &[])?.unwrap_or(Flux::Rusanov);
+    let flux = table.choice("flux", Flux::NAMES, &[])?.unwrap_or(Flux::Dual);
     let cfl = table.number("cfl", POSITIVE)?;
     let safety = table.number("safety", POSITIVE)?;
     let sweeps = table.choice("sweeps", Sweeps::NAMES, &[])?;
@@ -324,9 +324,9 @@ fn source(mut table: Reader) -> Result<Source> {
 
 fn curl(table: Option<&mut Reader>, degree: usize) -> Result<Curl> {
     let alpha = if degree >= 4 { 6.0 } else { 3.0 };
-    let Some(table) = table else { return Ok(Curl::Lcf { alpha }) };
+    let Some(table) = table else { return Ok(Curl::Rotation { alpha }) };
     let controls = [("rotation", Curl::Rotation { alpha }), ("lcf", Curl::Lcf { alpha }), ("off", Curl::Off)];
-    let mut curl = table.choice("control", &controls, &["auto"])?.unwrap_or(Curl::Lcf { alpha });
+    let mut curl = table.choice("control", &controls, &["auto"])?.unwrap_or(Curl::Rotation { alpha });
     if let Curl::Rotation { alpha } | Curl::Lcf { alpha } = &mut curl {
         *alpha = table.number("alpha", POSITIVE)?.unwrap_or(*alpha);
     }

@@ -3,7 +3,7 @@
 use super::curl_core::Cells;
 use super::volume::Masses;
 use crate::lane::{F8, Lane, Lanes, Work};
-use crate::operators::curl_free::{Class, Halves};
+use crate::operators::curl_free::{Class, Halves, Relax};
 use crate::operators::{CurlFree, Matrix, Share};
 use crate::tensor::contract;
 
@@ -24,19 +24,11 @@ pub struct Control {
     pub rate: f64,
 }
 
-/// What a control relaxes of R = F - Pi F, see [`crate::operators::curl_free`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Relax {
-    /// All of it.
-    Gradient,
-    /// Rotation and deviator, at a rate tied to compression.
-    Rotation,
-}
-
-/// What of the speed of the prestress the rotation of R goes with.
+/// What of the speed of the prestress ([`super::Speeds`]) the rotation of R goes with: half of it leaves growth at
+/// diag(.7, .7), twice of it nothing less.
 pub const ROTATION: f64 = 1.0;
 
-/// What of it the deviator goes with.
+/// What of it the deviator goes with; with the rotation alone N = 3 grows at diag(.7, .7) by 3e-3 c/h.
 pub const DEVIATOR: f64 = 0.5;
 
 /// (-1)^j / (j + 2)!: 1 - exp(-r) = r - r^2 sum_j of these r^j.
@@ -95,7 +87,15 @@ pub fn project<L: Lanes, const M: usize>(
     }
 }
 
-/// Takes rotation and deviator of R = F - Pi F from F.
+/// Takes the shares `theta` (of the rotation, of the deviator) of R = F - Pi F from F, at each node
+///
+/// ```text
+/// dF = -theta_r r e - theta_d (R - r e - q (g : R) g),   r = q (e : R),   e = E F,  g = cof F,  q = 1/|F|^2
+/// F <- F + dF - sum_b w_b J_b dF_b / sum_b w_b J_b
+/// ```
+///
+/// and leaves the trace part q (g : R) g. P F^T is symmetric: P : e = 0 at each node, and the rotation does no work but
+/// that of the mean, which is of second order; for a law linear in F neither strain nor energy see it. `gradients` is memory.
 #[inline(always)]
 pub fn rotate<L: Lanes, const M: usize>(
     curl_free: &CurlFree,

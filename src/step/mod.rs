@@ -26,8 +26,9 @@ pub mod sweeps;
 mod tiles;
 mod volume;
 
+pub use crate::operators::curl_free::Relax;
 pub use balance::Balance;
-pub use curl::{Control, Relax};
+pub use curl::Control;
 pub use energy::Totals;
 pub use history::Histories;
 pub use phase::{Phase, Phases};
