@@ -7,7 +7,7 @@ use dgmpm::cloud::{Locator, Pattern, from_points};
 use dgmpm::lane::{F8, Kernel, Lanes, Work, load_array, store_array};
 use dgmpm::material::{Law, LinearElastic, Material, NeoHookean};
 use dgmpm::mesh::map;
-use dgmpm::riemann::{Medium, Acoustic, AcousticCurl, Riemann, Rusanov, Trace};
+use dgmpm::riemann::{Acoustic, AcousticCurl, Medium, Riemann, Rusanov, Trace};
 use dgmpm::scene::Method;
 use dgmpm::step::{Survey, Work as Memory};
 use divan::{Bencher, black_box, counter::ItemsCount};

@@ -46,12 +46,12 @@ fn defaults() {
     assert_eq!(scene.materials[0].parameters["young"], 2e11);
     assert_eq!(scene.initial.deformation.each_ref().map(|f| f.constant().unwrap()), [1.0, 0.0, 0.0, 1.0]);
     assert_eq!(scene.boundaries[0].condition, Condition::Wall { speed: Expression::number(0.0) });
-    assert_eq!(scene.curl, Curl::Lcf { alpha: 3.0 });
+    assert_eq!((scene.curl, scene.scheme.flux), (Curl::Rotation { alpha: 3.0 }, Flux::Dual));
     let scheme = Scheme {
         method: Method::AderDgmpm,
         degree: 2,
         time_degree: 2,
-        flux: Flux::Rusanov,
+        flux: Flux::Dual,
         step: Step::Safety(0.9),
         sweeps: Sweeps::Ladder,
     };
@@ -59,7 +59,7 @@ fn defaults() {
     assert!(scene.outputs.is_empty() && scene.sources.is_empty());
     let high = parse(MINIMAL, &["scheme.degree=4"]).unwrap();
     assert_eq!(high.cloud, Cloud { layout: Layout::InCells(seed::Layout::Midpoints), per_direction: 5 });
-    assert_eq!((high.curl, high.scheme.time_degree), (Curl::Lcf { alpha: 6.0 }, 4));
+    assert_eq!((high.curl, high.scheme.time_degree), (Curl::Rotation { alpha: 6.0 }, 4));
 }
 
 #[test]

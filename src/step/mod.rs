@@ -217,3 +217,5 @@ impl Scheme {
 mod tests;
 #[cfg(test)]
 mod sweep_tests;
+#[cfg(test)]
+mod rotation_tests;

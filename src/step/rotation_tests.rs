@@ -1,0 +1,122 @@
+//! What the control of the curl by rotation holds.
+use super::tests::{KINDS, Kind, distorted, march, midpoints, scheme, state, unpacked, wall, wavy};
+use super::*;
+use crate::cloud::Cloud;
+use crate::material::LinearElastic;
+use crate::mesh::Mesh;
+use crate::tensor;
+
+/// F on a cell with a rotation and a strain that are no gradients, about a compressed mean.
+fn rough(_: [f64; 2], a: usize) -> [f64; 6] {
+    let s = |k: usize| ((7 * a + 3 * k) as f64).sin();
+    [0.9 + 0.02 * s(0), 0.03 * s(1), -0.02 * s(2), 0.85 + 0.02 * s(3), 0.0, 0.0]
+}
+
+/// F of all cells, `[cell][component][node]`, after the control alone: the difference of steps with and without it.
+fn relaxed(mesh: &Mesh, kind: Kind, degree: usize, law: Option<Law>) -> [Vec<f64>; 2] {
+    [true, false].map(|on| {
+        let base = scheme(mesh, kind, degree, &midpoints(mesh, degree), wall);
+        let laws = law.clone().map_or(base.laws.clone(), |law| vec![law]);
+        let scheme = Scheme { curl: base.curl.filter(|_| on), laws, ..base };
+        let mut state = state(mesh, &scheme, rough);
+        march(&scheme, &mut state, 1, 1e-3);
+        unpacked(&scheme, &state)
+    })
+}
+
+#[test]
+fn the_control_keeps_the_mean_of_f_and_the_trace_part_at_every_node_and_does_something() {
+    let mesh = distorted(3);
+    for degree in 1..=4 {
+        let n = (degree + 1) * (degree + 1);
+        for kind in KINDS {
+            let [with, without] = relaxed(&mesh, kind, degree, None);
+            let base = scheme(&mesh, kind, degree, &midpoints(&mesh, degree), wall);
+            let mut largest = 0.0f64;
+            for (cell, (with, without)) in with.chunks(6 * n).zip(without.chunks(6 * n)).enumerate() {
+                let (block, lane) = base.operators.blocks.slot[cell];
+                let masses: Vec<f64> = base.operators.geometry.masses(&base.operators.line, block, lane).collect();
+                for k in 0..6 {
+                    let change = |a: usize| with[k * n + a] - without[k * n + a];
+                    let mean: f64 = (0..n).map(|a| masses[a] * change(a)).sum();
+                    // A sum of 25 numbers of size 1 at most.
+                    assert!(mean.abs() < 1e-15, "{kind:?} S{degree}: {mean:e}");
+                    (0..n).for_each(|a| largest = largest.max(change(a).abs()));
+                }
+            }
+            // theta is 3 N 1e-3 times the prestress (some .3 of mu), R some 1e-2.
+            assert!(largest > 1e-7, "{kind:?} S{degree}: {largest:e}");
+        }
+    }
+}
+
+#[test]
+fn a_law_linear_in_f_and_a_body_in_tension_are_left_alone_to_the_bit() {
+    let mesh = distorted(3);
+    let linear = Law::Linear(LinearElastic::new(1.0, 0.3, 1.3));
+    for kind in KINDS {
+        let [with, without] = relaxed(&mesh, kind, 2, Some(linear.clone()));
+        assert!(with == without, "{kind:?}");
+        let [with, without] = [true, false].map(|on| {
+            let base = scheme(&mesh, kind, 2, &midpoints(&mesh, 2), wall);
+            let scheme = Scheme { curl: base.curl.filter(|_| on), ..base };
+            let mut state = state(&mesh, &scheme, |x, a| {
+                let u = wavy(x, a);
+                [u[0] + 0.15, u[1], u[2], u[3] + 0.1, 0.1 * u[4], 0.1 * u[5]]
+            });
+            march(&scheme, &mut state, 3, 0.05);
+            unpacked(&scheme, &state)
+        });
+        assert!(with == without, "{kind:?}");
+    }
+}
+
+#[test]
+fn taken_whole_once_it_leaves_gradients_and_the_mean_and_takes_only_rotation() {
+    let mesh = distorted(4);
+    for degree in 1..=4 {
+        let scheme = scheme(&mesh, Kind::AderDgfem, degree, &Cloud::default(), wall);
+        let (operators, n) = (&scheme.operators, (degree + 1) * (degree + 1));
+        let curl_free = operators.curl_free.as_ref().unwrap();
+        for &(block, lane) in &operators.blocks.slot {
+            let values: Vec<[f64; 6]> = (0..n).map(|a| rough([0.0; 2], a)).collect();
+            let first: Vec<f64> = (0..4 * n).map(|i| values[i % n][i / n]).collect();
+            let mut f = first.clone();
+            curl_free.relax(Relax::Rotation, &operators.line, &operators.geometry, [block, lane], &mut f);
+            let masses: Vec<f64> = operators.geometry.masses(&operators.line, block, lane).collect();
+            let total: f64 = masses.iter().sum();
+            let change = |a: usize| [0, 1, 2, 3].map(|k| f[k * n + a] - first[k * n + a]);
+            // All nodes were given the same shift that keeps the mean; without it each moves along e = E F.
+            let mut shift = [0.0; 4];
+            (0..n).for_each(|a| (0..4).for_each(|k| shift[k] += masses[a] * change(a)[k] / total));
+            assert!(shift.iter().all(|s| s.abs() < 1e-15), "S{degree}: {shift:?}");
+            let mut gradient = f.clone();
+            curl_free.project(&operators.line, &operators.geometry, [block, lane], &mut gradient);
+            let mut kept = gradient.clone();
+            curl_free.relax(Relax::Rotation, &operators.line, &operators.geometry, [block, lane], &mut kept);
+            for (a, b) in kept.iter().zip(&gradient) {
+                // The projection is exact to its rounding.
+                assert!((a - b).abs() < 1e-12, "S{degree}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_jump_of_rotation_does_no_work_for_a_law_linear_in_f() {
+    use crate::riemann::{Dual, Medium, Trace};
+    let law = Law::Linear(LinearElastic::new(1.0, 0.4, 1.3));
+    let n = [0.6, 0.8];
+    for k in 0..50 {
+        let s = |i: usize| 0.1 * ((13 * k + 5 * i) as f64).sin();
+        let side = |at: usize| {
+            let f = [1.0 + s(at), s(at + 1), s(at + 2), 1.0 + s(at + 3)];
+            Trace { f, v: [0.0; 2], t: [0.0; 2], c: law.speeds(f, n) }
+        };
+        let (minus, plus) = (side(0), side(9));
+        let add = Dual::incompatible(&minus, &plus, n, 1.0, &Medium::new(&law, 2));
+        // The power against a symmetric stress, about F = 1: of second order in F - 1 (here .01), where the jump is of first.
+        let work = tensor::contract(add, [1.0, 0.3, 0.3, -0.7]);
+        assert!(work.abs() < 0.5 * 0.1 * 0.1, "{work:e}");
+    }
+}
