@@ -97,7 +97,10 @@ impl Solve<'_> {
         let outcome = Outcome::new(self.scene, &built.body, &built.scheme, &state, &report);
         outcome.print();
         if let (true, Ok(())) = (report.watch.warned(), &result) {
-            warn(format!("{}: do not trust these results; `energy_made` in summary.json", energy_made(&report.watch.made)));
+            warn(format!(
+                "{}: do not trust these results; `energy_made` in summary.json",
+                energy_made(&report.watch.made)
+            ));
         }
         let written = outcome.write(self.folder, status);
         say(format!("results in {}", self.folder.root.display()));

@@ -139,8 +139,7 @@ impl Run<'_, '_> {
             self.scheme.surveyed(&mut work, &mut next).map_err(Stop::Unstable)?;
             std::mem::swap(state, &mut work.next);
             std::mem::swap(&mut survey, &mut next);
-            let last = state.time >= self.settings.end;
-            match report.count(self.scheme, dt, (state, &survey), &mut work, last) {
+            match report.count(self.scheme, dt, (state, &survey), &mut work) {
                 Some(Alarm::Stop(made)) => return Err(Stop::EnergyMade(made)),
                 Some(Alarm::Warning(made)) => self.observers.iter_mut().for_each(|o| o.energy_made(&made)),
                 None => {}

@@ -80,14 +80,13 @@ impl Report {
         self.bytes = self.bytes.max(scheme.operators.bytes() + work.bytes() + state);
     }
 
-    /// Counts a step of `dt` that led to `state`, the `last` one or not; what the watch over the energy says of it.
+    /// Counts a step of `dt` that led to `state`; what the watch over the energy says of it.
     pub(super) fn count(
         &mut self,
         scheme: &Scheme,
         dt: f64,
         (state, survey): (&State, &Survey),
         work: &mut Work,
-        last: bool,
     ) -> Option<Alarm> {
         self.steps += 1;
         self.updates += (dofs(scheme) * scheme.stages()) as f64;
@@ -97,7 +96,7 @@ impl Report {
         if let Some(balance) = &mut self.balance {
             work.settle(scheme, balance);
         }
-        self.watch.step(scheme, state, work, self.balance.as_ref(), last)
+        self.watch.step(scheme, state, work, self.balance.as_ref())
     }
 
     /// What a regrid took of the energy, J/m.
@@ -114,6 +113,7 @@ impl Report {
         (self.wall, self.cpu) = (self.clock.0.elapsed().as_secs_f64(), self.clock.1.elapsed().as_secs_f64());
         let last = scheme.totals(state);
         self.min_j = self.min_j.min(last.min_j);
+        self.watch.close(last.accounted(), state);
         self.last = Some(last);
     }
 

@@ -347,7 +347,8 @@ fn watch(table: Option<&mut Reader>) -> Result<Option<Limits>> {
     let stop = stop.unwrap_or(Limits::default().stop);
     let warn = warn.unwrap_or(Limits::default().warn.min(stop));
     if off && table.has("warn") || warn > stop {
-        let what = format!("the run would warn at {warn}, and {}", if off { "the watch is off" } else { "stop before" });
+        let what =
+            format!("the run would warn at {warn}, and {}", if off { "the watch is off" } else { "stop before" });
         return Err(table.wrong("warn", what, "give a share up to that of `energy`, or leave it out"));
     }
     Ok((!off).then_some(Limits { warn, stop }))

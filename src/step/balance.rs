@@ -152,19 +152,6 @@ pub(super) fn add<L: Lanes>(weight: L, x: L, sum: &mut F8) {
     weight.mul_add(x, L::load(sum)).store(sum);
 }
 
-/// sum_a m_a rho0 b_a.v_a, W/m: `mean` is [node][6] with v behind F, `source` [2][node].
-#[inline(always)]
-pub(super) fn source_power<L: Lanes>(density: f64, mass: &[F8], mean: &[F8], source: &[F8]) -> L {
-    let n = mass.len();
-    let mut sum = L::zero();
-    for (a, mass) in mass.iter().enumerate() {
-        let v = load_array::<L, 2>(&mean[6 * a + 4..6 * a + 6]);
-        let power = dot([L::load(&source[a]), L::load(&source[n + a])], v);
-        sum = L::load(mass).mul_add(power, sum);
-    }
-    L::splat(density) * sum
-}
-
 impl Work {
     /// With the memory that the balance of energy needs; the steps then meter it.
     pub fn with_balance(mut self, scheme: &Scheme) -> Self {

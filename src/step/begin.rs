@@ -1,7 +1,7 @@
 //! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
 
-use super::balance::{self, Sums};
-use super::outside::Given;
+use super::balance::Sums;
+use super::outside::{Given, SourceStage};
 use super::phase::Clock;
 use super::predictor::Predictor;
 use super::predictor::transfer::{FieldsToPoints, ToNodes};
@@ -88,10 +88,10 @@ impl Work for Extras<'_, '_> {
                     factor.mul_add(L::load(&nodes.source[k * n + a]), L::load(rate)).store(rate);
                 }
             }
-            if let Some(given) = block.given.as_mut() {
-                let power = balance::source_power::<L>(density, &nodes.masses, &nodes.mean, &nodes.source);
-                let dt = L::splat(block.stage.dt * block.scheme.weight(block.stage.number));
-                balance::add(dt, power, &mut given.source);
+            if let Some(given) = block.given.as_deref_mut() {
+                let (masses, mean, source) = (&nodes.masses, &nodes.mean, &nodes.source);
+                let factor = block.stage.dt * block.scheme.weight(block.stage.number);
+                SourceStage { density, factor, masses, mean, source, given }.add::<L>();
             }
         }
         if block.state.has_displacement() {

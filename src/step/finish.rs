@@ -3,7 +3,7 @@
 
 use super::balance::Sums;
 use super::block_energy::BlockEnergy;
-use super::outside::Given;
+use super::outside::{Given, SourceEnd};
 use super::sums::Terms;
 use super::survey::{Examine, History, Worst};
 use super::volume::{Masses, cofactors, row, with_nodes};
@@ -66,6 +66,9 @@ impl Block<'_> {
         let Some(New { u, internal, speed, worst }) = self.new.take() else { return };
         kernel.run(Update(&mut self, u));
         self.scratch.phases.book(Phase::Corrector, &mut clock);
+        if !self.scheme.sources.is_empty() {
+            self.meter_sources(u);
+        }
         self.meter(u, |sums, energy| (sums.corrected, sums.energy) = (energy, energy));
         if self.scheme.curl_rate.is_some() {
             with_nodes!(line.m, M => kernel.run(Project::<'_, '_, M>(&mut self, u)));
@@ -101,6 +104,18 @@ impl<const M: usize> Work for Project<'_, '_, M> {
 }
 
 impl Block<'_> {
+    /// Books the work of sources in the step to `u`.
+    fn meter_sources(&mut self, u: &[F8]) {
+        let Some(given) = self.given.as_deref_mut() else { return };
+        let (operators, n, stride) = (&self.scheme.operators, self.scheme.operators.nodes(), self.rate.len());
+        let (line, metric) = (&operators.line, &operators.geometry.blocks[self.block]);
+        let masses = &mut self.scratch.nodes.masses;
+        with_nodes!(line.m, M => { self.scheme.kernel.run(Masses::<'_, M> { line, metric, masses }); });
+        let momenta = 4 * n..6 * n;
+        let before = &self.state.u[stride * self.block..][momenta.clone()];
+        self.scheme.kernel.run(SourceEnd { masses, before, after: &u[momenta], given });
+    }
+
     /// Books the energy of `u` where the balance is on.
     fn meter(&mut self, u: &[F8], book: impl Fn(&mut Sums, F8)) {
         let Some(sums) = self.sums.as_deref_mut() else { return };

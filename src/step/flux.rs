@@ -168,8 +168,11 @@ impl Meter<'_, '_> {
             (metric.length(face) * L::splat(*weight * factor)).store(&mut scale);
             for (lane, neighbour) in neighbours.iter().enumerate() {
                 match neighbour {
-                    // What a condition loses is booked with its work; it has no jumps.
-                    Neighbour::Boundary(_) => (0..W).for_each(|k| there[k].0[lane] = own[k].0[lane]),
+                    // What a condition loses is booked with its work; it has no jumps, and no flux that means anything.
+                    Neighbour::Boundary(_) => {
+                        (0..W).for_each(|k| there[k].0[lane] = own[k].0[lane]);
+                        flux.iter_mut().for_each(|flux| flux.0[lane] = 0.0);
+                    }
                     Neighbour::Interface(..) => {
                         let special = place.special(face, point, lane, own, sides.other);
                         special.iter().for_each(|special| (0..6).for_each(|k| flux[k].0[lane] = special[k]));

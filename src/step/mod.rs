@@ -145,7 +145,9 @@ impl Work {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let numbers = self.next.u.len() + self.next.internal.len() + self.speed.len() + self.tiles.numbers();
-        numbers * size_of::<F8>() + self.outside.bytes() + self.balance.as_ref().map_or(0, |sums| size_of_val(&sums[..]))
+        numbers * size_of::<F8>()
+            + self.outside.bytes()
+            + self.balance.as_ref().map_or(0, |sums| size_of_val(&sums[..]))
     }
 }
 

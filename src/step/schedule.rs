@@ -281,7 +281,9 @@ impl Step<'_> {
 impl Scheme {
     /// All stages of a step.
     pub(super) fn run_stages(&self, stages: &[Stage], state: &State, survey: &Survey, work: &mut Work) {
-        let Work { tiles: Tiles { tiles, phases, shown, slots, far, .. }, next, speed, outside, balance, scratch, .. } = work;
+        let Work {
+            tiles: Tiles { tiles, phases, shown, slots, far, .. }, next, speed, outside, balance, scratch, ..
+        } = work;
         let (u, internal, balance) = (&mut next.u[..], &mut next.internal[..], balance.as_deref_mut());
         let mut out = Out { first: 0, u, internal, speed, given: &mut outside.given, balance };
         let count = tiles.len();
