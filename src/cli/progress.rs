@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::observe::{Observer, Schedule, View, When};
+use crate::step::EnergyMade;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -31,7 +32,25 @@ impl Progress {
     }
 }
 
+/// The warning over energy that was made, as a clause.
+pub fn energy_made(made: &EnergyMade) -> String {
+    let EnergyMade { joule, share, time, step } = made;
+    format!(
+        "{joule:.3e} J/m made out of nothing ({:.2} % of the energy at the start or the work done), step {step}, t = {time:.6e} s",
+        100.0 * share
+    )
+}
+
 impl Observer for Progress {
+    fn energy_made(&mut self, made: &EnergyMade) {
+        let text = format!("warning: {}; the run goes on", energy_made(made));
+        match &self.bar {
+            // Above the bar, which stays.
+            Some(bar) => bar.println(text),
+            None => drop(writeln!(std::io::stderr(), "{text}")),
+        }
+    }
+
     fn schedule(&mut self) -> &mut Schedule {
         &mut self.schedule
     }

@@ -2,7 +2,7 @@
 
 use super::pipeline::{self, Files, Store};
 use super::print::{say, warn};
-use super::progress::Progress;
+use super::progress::{Progress, energy_made};
 use super::rebuild::{self, Built, Regrids};
 use super::summary::Outcome;
 use super::{RunArgs, SceneArgs, preprocess};
@@ -13,7 +13,7 @@ use crate::observe;
 use crate::run::{End, Folder, Report, Run, Settings, Stop};
 use crate::scene::Scene;
 use crate::state::State;
-use crate::step::Loss;
+use crate::step::{EnergyMade, Loss};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -96,6 +96,12 @@ impl Solve<'_> {
         report.finish(&built.scheme, &state);
         let outcome = Outcome::new(self.scene, &built.body, &built.scheme, &state, &report);
         outcome.print();
+        if let (true, Ok(())) = (report.watch.warned(), &result) {
+            warn(format!(
+                "{}: do not trust these results; `energy_made` in summary.json",
+                energy_made(&report.watch.made)
+            ));
+        }
         let written = outcome.write(self.folder, status);
         say(format!("results in {}", self.folder.root.display()));
         result.and(written)
@@ -138,11 +144,30 @@ impl Solve<'_> {
         };
         match stop {
             Stop::Unstable(loss) => ("unstable", Err(unstable(&loss, built, state, &place))),
+            Stop::EnergyMade(made) => ("unstable", Err(too_much(&made, &kept))),
             _ => (
                 "interrupted",
                 Err(Error::Interrupted(format!("at step {}, t = {:.6e} s; {place}", state.step, state.time))),
             ),
         }
+    }
+}
+
+/// The error of a run that made so much energy that it was stopped.
+fn too_much(made: &EnergyMade, kept: &Result<PathBuf>) -> Error {
+    let place = match kept {
+        Ok(path) => format!("its state is in {}, the last good one is earlier", path.display()),
+        Err(why) => format!("its state could not be kept: {why}"),
+    };
+    Error::Unstable {
+        what: format!("the body has energy that nothing gave to it: {}", energy_made(made)),
+        time: made.time,
+        step: made.step,
+        remedy: format!(
+            "{place}; see ledger.csv for when it began; [watch] energy = {:.0e} or \"off\" lets it go on; another [curl] control, \
+             points on the Gauss nodes ([cloud] layout = \"gauss\") or a finer mesh may hold it",
+            10.0 * made.share
+        ),
     }
 }
 

@@ -94,7 +94,7 @@ fn rows(report: &Report) -> Vec<(String, String)> {
     if let (Some(first), Some(last)) = (&report.first, &report.last) {
         rows.push(row("kinetic energy", format!("{:.6e} -> {:.6e} J/m", first.kinetic, last.kinetic)));
         rows.push(row("strain energy", format!("{:.6e} -> {:.6e} J/m", first.strain, last.strain)));
-        rows.push(row("total energy", format!("{:.6} of the start", report.energy_ratio())));
+        rows.push(row("total energy", format!("{:.6} of start and work", report.energy_ratio())));
         if let Some((first, last)) = first.plastic.zip(last.plastic) {
             rows.push(row("plastic dissipation", format!("{first:.6e} -> {last:.6e} J/m")));
         }
@@ -105,25 +105,35 @@ fn rows(report: &Report) -> Vec<(String, String)> {
         if let Some((first, last)) = first.angular_momentum.zip(last.angular_momentum) {
             rows.push(row("angular momentum", format!("{first:.6e} -> {last:.6e} kg m/s")));
         }
-        if let Some(balance) = &report.balance {
-            rows.extend(balance_rows(balance, last.accounted()));
+        match &report.balance {
+            Some(balance) => rows.extend(balance_rows(balance)),
+            None => rows.extend(work_rows(report.watch.work)),
+        }
+        let made = report.watch.made;
+        if report.watch.warned() {
+            rows.push(row("energy made", format!("{:.3e} J/m, {:.2} %", made.joule, 100.0 * made.share)));
         }
         rows.push(row("min J, max |curl F|", format!("{:.6}, {:.3e} 1/m", report.min_j, last.max_curl)));
     }
     rows
 }
 
-/// Where energy came from and went to; what a run did not have is left out.
-fn balance_rows(balance: &Balance, energy: f64) -> Vec<(String, String)> {
+/// What came from outside; what a run did not have is left out.
+fn work_rows([boundary, sources]: [f64; 2]) -> Vec<(String, String)> {
+    let parts = [("work of the boundary", boundary), ("work of sources", sources)];
+    let there = parts.into_iter().filter(|(_, joule)| *joule != 0.0);
+    there.map(|(name, joule)| row(format!("  {name}"), format!("{joule:.6e} J/m"))).collect()
+}
+
+/// Where energy came from and went to.
+fn balance_rows(balance: &Balance) -> Vec<(String, String)> {
     let parts = [
-        ("work of the boundary", balance.boundary_work),
-        ("work of sources", balance.source_work),
         ("lost at faces", balance.flux_dissipation),
         ("lost at the boundary", balance.boundary_dissipation),
-        ("lost by the projection", balance.curl_dissipation),
+        ("lost by the control of the curl", balance.curl_dissipation),
         ("lost by regrids", balance.regrid_dissipation),
     ];
     let there = parts.into_iter().filter(|(_, joule)| *joule != 0.0);
-    let all = there.chain([("remainder (time integration)", balance.remainder(energy))]);
-    all.map(|(name, joule)| row(format!("  {name}"), format!("{joule:.6e} J/m"))).collect()
+    let lost = there.map(|(name, joule)| row(format!("  {name}"), format!("{joule:.6e} J/m")));
+    work_rows([balance.boundary_work, balance.source_work]).into_iter().chain(lost).collect()
 }

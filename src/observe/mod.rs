@@ -20,7 +20,7 @@ use crate::error::Error;
 use crate::io::snapshot::GridFiles;
 use crate::mesh::Mesh;
 use crate::state::State;
-use crate::step::{Balance, Scheme, Survey};
+use crate::step::{Balance, EnergyMade, Scheme, Survey};
 
 /// What an observer sees: the state at the end of a step.
 #[derive(Clone, Copy)]
@@ -65,6 +65,9 @@ pub trait Observer {
     /// # Errors
     /// Where its output cannot be written.
     fn observe(&mut self, view: &View) -> Result<(), Error>;
+
+    /// The body has made energy out of nothing: said once, while the run goes on. Nothing to do for those that say nothing.
+    fn energy_made(&mut self, _: &EnergyMade) {}
 
     /// The run goes on with another grid. Nothing to do for those that keep nothing of the old one.
     ///

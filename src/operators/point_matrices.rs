@@ -4,7 +4,7 @@ use super::{Line, Matrix};
 use crate::basis::MovingLeastSquares;
 use crate::basis::mls::LineFit;
 use crate::error::Error;
-use crate::lane::{Coefficient, F8, LANES};
+use crate::lane::{Coefficient, F8, LANES, Lane, Lanes, Portable};
 
 /// Coordinates that differ by less are the same: clouds from files are held to 2^-40 of the cell (`cloud::locate`).
 const SAME: f64 = 1.0 / (1_u64 << 40) as f64;
@@ -58,6 +58,28 @@ impl<C: Coefficient> PointMatrices<C> {
             PointMatrices::Lattice([a, _]) => a.from_nodes.rows > a.from_nodes.columns,
             _ => false,
         }
+    }
+
+    /// sum_a m_a chi_p(X_a) of all points for numbers m_a at the nodes: with the mass matrix the integrals of the chi_p over
+    /// each cell, exact and of either sign. Points that fill up a lane have none.
+    pub fn integrals(&self, masses: &[F8]) -> Vec<F8> {
+        let m = masses.len().isqrt();
+        let of = |matrix: &Matrix<C>, a: usize, p: usize| matrix.data[a * matrix.columns + p].lanes::<Portable>();
+        let chi = |a: usize, p: usize| match self {
+            PointMatrices::Dense { to_nodes, .. } => of(to_nodes, a, p),
+            PointMatrices::Lattice([first, second]) => {
+                let k = second.to_nodes.columns;
+                of(&first.to_nodes, a / m, p / k) * of(&second.to_nodes, a % m, p % k)
+            }
+            PointMatrices::Nodes(_) => Portable::splat(if a == p { 1.0 } else { 0.0 }),
+        };
+        let integral = |p: usize| {
+            let mut out = F8::ZERO;
+            let add = |sum: Portable, a: usize| Portable::load(&masses[a]).mul_add(chi(a, p), sum);
+            (0..masses.len()).fold(Portable::zero(), add).store(&mut out);
+            out
+        };
+        (0..self.points()).map(integral).collect()
     }
 
     /// All matrices in the order of storage.

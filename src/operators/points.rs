@@ -1,6 +1,6 @@
 //! Transfer between material points and grid nodes (18), (22) and derivatives at the points (20).
 
-use super::matrix::{Pool, Share, classes};
+use super::matrix::{Matrix, Pool, Share, classes};
 use super::{Blocks, Line, PointMatrices};
 use crate::cloud::Cloud;
 use crate::error::Error;
@@ -107,6 +107,15 @@ impl Points {
     /// the derivatives of its matrices are along X.
     pub fn metric_of(&self, block: usize) -> &[F8] {
         &self.metric[self.first_metric[block]..self.first_metric[block + 1]]
+    }
+
+    /// P2G of one lane of a block as a dense matrix, chi_p(X_a): nodes x points.
+    pub fn to_nodes(&self, block: usize, lane: usize) -> Matrix<f64> {
+        let one = match self.pool.share[block] {
+            Share::Shared(k) => self.pool.shared[k].to_dense(),
+            Share::Own(k) => self.pool.own[k].lane(lane).to_dense(),
+        };
+        if let PointMatrices::Dense { to_nodes, .. } = one { to_nodes } else { Matrix::default() }
     }
 
     /// Bytes held.

@@ -3,17 +3,20 @@
 mod folder;
 mod norms;
 mod report;
+mod watch;
 
 pub use folder::Folder;
 pub use norms::norms;
 pub use report::{Report, dofs, peak_memory_mib};
+pub use watch::{Limits, Watch};
 
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::observe::{Observer, View};
 use crate::state::State;
-use crate::step::{Balance, Loss, Scheme, Survey, Work};
+use crate::step::{Balance, EnergyMade, Loss, Scheme, Survey, Work};
 use std::sync::atomic::{AtomicBool, Ordering};
+use watch::Alarm;
 
 /// How far and in what steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,6 +25,8 @@ pub struct Settings {
     pub end: f64,
     /// dt = courant min_e h_e / c_max, c_max the largest current speed.
     pub courant: f64,
+    /// What the watch over the energy does at which shares; none where it is off.
+    pub watch: Option<Limits>,
 }
 
 /// Why a run stopped before its end; the state is then the last good one.
@@ -29,6 +34,8 @@ pub struct Settings {
 pub enum Stop {
     /// A step lost stability.
     Unstable(Loss),
+    /// The body has energy that nothing gave to it.
+    EnergyMade(EnergyMade),
     /// The user asked for it.
     Interrupted,
     /// An output could not be written.
@@ -110,7 +117,7 @@ impl Run<'_, '_> {
         }
         let mut survey = Survey::default();
         self.scheme.survey(state, &work, &mut survey).map_err(Stop::Unstable)?;
-        report.start(self.scheme, state, &work);
+        report.start(self.scheme, (state, &survey), &work, self.settings.watch);
         let h = self.smallest_h();
         let mut next = survey.clone();
         while state.time < self.settings.end {
@@ -132,7 +139,11 @@ impl Run<'_, '_> {
             self.scheme.surveyed(&mut work, &mut next).map_err(Stop::Unstable)?;
             std::mem::swap(state, &mut work.next);
             std::mem::swap(&mut survey, &mut next);
-            report.count(self.scheme, dt, &survey, &mut work);
+            match report.count(self.scheme, dt, (state, &survey), &mut work) {
+                Some(Alarm::Stop(made)) => return Err(Stop::EnergyMade(made)),
+                Some(Alarm::Warning(made)) => self.observers.iter_mut().for_each(|o| o.energy_made(&made)),
+                None => {}
+            }
         }
         self.observe(state, &survey, report.balance.as_ref(), 0.0)?;
         Ok(End::Done)

@@ -1,5 +1,6 @@
 //! What a run cost and what became of energy and momentum: the table at its end and `summary.json`.
 
+use super::watch::{Alarm, Limits, Watch};
 use crate::state::{State, UNKNOWNS};
 use crate::step::phase::{NAMES, Phases};
 use crate::step::{Balance, Scheme, Survey, Totals, Work};
@@ -22,7 +23,9 @@ pub struct Report {
     pub last: Option<Totals>,
     /// The balance of energy since the start, where an observer wants it.
     pub balance: Option<Balance>,
-    /// min J over all points and steps.
+    /// The work done on the body, and the energy that was made out of nothing.
+    pub watch: Watch,
+    /// The smallest J seen anywhere, at all places where it is tested, from the start to the end.
     pub min_j: f64,
     /// Bytes of operators, state and work.
     pub bytes: usize,
@@ -44,6 +47,7 @@ impl Default for Report {
             first: None,
             last: None,
             balance: None,
+            watch: Watch::default(),
             min_j: f64::INFINITY,
             bytes: 0,
             wall: 0.0,
@@ -55,19 +59,35 @@ impl Default for Report {
 }
 
 impl Report {
-    pub(super) fn start(&mut self, scheme: &Scheme, state: &State, work: &Work) {
+    pub(super) fn start(
+        &mut self,
+        scheme: &Scheme,
+        (state, survey): (&State, &Survey),
+        work: &Work,
+        limits: Option<Limits>,
+    ) {
         // After a pause the clocks and the balance go on.
         if self.first.is_none() {
             self.clock = (Instant::now(), ProcessTime::now());
             let first = scheme.totals(state);
             self.balance = work.has_balance().then(|| Balance::starting_at(first.accounted()));
+            self.watch = Watch::new(scheme, &first, limits);
+            self.min_j = first.min_j;
             self.first = Some(first);
         }
+        self.min_j = self.min_j.min(survey.min_j);
         let state = size_of_val(&state.u[..]) + size_of_val(&state.internal[..]);
         self.bytes = self.bytes.max(scheme.operators.bytes() + work.bytes() + state);
     }
 
-    pub(super) fn count(&mut self, scheme: &Scheme, dt: f64, survey: &Survey, work: &mut Work) {
+    /// Counts a step of `dt` that led to `state`; what the watch over the energy says of it.
+    pub(super) fn count(
+        &mut self,
+        scheme: &Scheme,
+        dt: f64,
+        (state, survey): (&State, &Survey),
+        work: &mut Work,
+    ) -> Option<Alarm> {
         self.steps += 1;
         self.updates += (dofs(scheme) * scheme.stages()) as f64;
         self.dt = [self.dt[0].min(dt), self.dt[1].max(dt)];
@@ -76,19 +96,25 @@ impl Report {
         if let Some(balance) = &mut self.balance {
             work.settle(scheme, balance);
         }
+        self.watch.step(scheme, state, work, self.balance.as_ref())
     }
 
     /// What a regrid took of the energy, J/m.
     pub fn regrid(&mut self, before: &Totals, after: &Totals) {
+        let (before, after) = (before.accounted(), after.accounted());
+        self.watch.regrid(before, after);
         if let Some(balance) = &mut self.balance {
-            balance.regrid_dissipation += before.accounted() - after.accounted();
+            balance.regrid(before, after);
         }
     }
 
     /// Stops the clocks and takes the totals; also for a run that stopped early.
     pub fn finish(&mut self, scheme: &Scheme, state: &State) {
         (self.wall, self.cpu) = (self.clock.0.elapsed().as_secs_f64(), self.clock.1.elapsed().as_secs_f64());
-        self.last = Some(scheme.totals(state));
+        let last = scheme.totals(state);
+        self.min_j = self.min_j.min(last.min_j);
+        self.watch.close(last.accounted(), state);
+        self.last = Some(last);
     }
 
     /// DoF-updates per CPU second.
@@ -96,10 +122,14 @@ impl Report {
         if self.cpu > 0.0 { self.updates / self.cpu } else { 0.0 }
     }
 
-    /// Kinetic and strain energy at the end over the start; 1 for a body that starts at rest and unstrained.
+    /// What is there at the end (kinetic and strain energy, and what plastic flow has dissipated) and what was given to the
+    /// outside, over what was there at the start and what came from outside: at most 1. It is 1 where there was nothing.
     pub fn energy_ratio(&self) -> f64 {
+        let work = self.watch.work[0] + self.watch.work[1];
         match (&self.first, &self.last) {
-            (Some(first), Some(last)) if first.energy() > 0.0 => last.energy() / first.energy(),
+            (Some(first), Some(last)) if first.accounted() + work.max(0.0) > 0.0 => {
+                (last.accounted() - work.min(0.0)) / (first.accounted() + work.max(0.0))
+            }
             _ => 1.0,
         }
     }
@@ -126,7 +156,9 @@ impl Report {
             ("strain_energy", json!(last.strain)),
             ("total_energy_ratio", json!(self.energy_ratio())),
             ("momentum", json!(last.momentum)),
-            ("min_j", json!(self.min_j.min(last.min_j))),
+            ("work", json!({ "boundary": self.watch.work[0], "sources": self.watch.work[1] })),
+            ("energy_made", made_json(&self.watch)),
+            ("min_j", json!(self.min_j)),
             ("max_curl_f", json!(last.max_curl)),
         ];
         if let Some(plastic) = last.plastic {
@@ -143,6 +175,15 @@ impl Report {
     }
 }
 
+/// Null where the watch is off.
+fn made_json(watch: &Watch) -> Value {
+    let made = watch.made;
+    match watch.is_on() {
+        true => json!({ "joule": made.joule, "share": made.share, "time": made.time, "step": made.step }),
+        false => Value::Null,
+    }
+}
+
 fn balance_json(balance: &Balance, energy: f64) -> Value {
     json!({
         "boundary_work": balance.boundary_work,
@@ -152,6 +193,7 @@ fn balance_json(balance: &Balance, energy: f64) -> Value {
         "curl_dissipation": balance.curl_dissipation,
         "regrid_dissipation": balance.regrid_dissipation,
         "remainder": balance.remainder(energy),
+        "jumps": balance.jumps,
     })
 }
 

@@ -261,7 +261,7 @@ impl Scene {
                 format!("give scheme.safety up to 1 (0.9 is the default), or scheme.cfl up to {allowed:.3}"),
             ));
         }
-        Ok(Settings { end: self.end, courant: safety * limit })
+        Ok(Settings { end: self.end, courant: safety * limit, watch: self.watch })
     }
 
     /// Whether all lines of the outputs lie in the mesh.

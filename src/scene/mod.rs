@@ -35,6 +35,7 @@ use crate::error::{Error, Place, Result};
 pub use crate::observe::Field;
 use crate::operators::Limits;
 pub use crate::riemann::Flux;
+use crate::run::Limits as WatchLimits;
 pub use cloud::{Given, Sampled, read_points};
 pub use exact::{Exact, SOLUTIONS};
 pub use expression::{Expression, FUNCTIONS, Fault};
@@ -73,6 +74,8 @@ pub struct Scene {
     pub end: f64,
     /// What is recorded when.
     pub outputs: Vec<Output>,
+    /// The watch over the energy; none where it is off.
+    pub watch: Option<WatchLimits>,
     /// When the run gets another grid.
     pub regrids: Vec<regrid::Regrid>,
     #[serde(skip)]

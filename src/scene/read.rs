@@ -11,6 +11,7 @@ use super::{
     Source, Step, Sweeps,
 };
 use crate::error::Result;
+use crate::run::Limits;
 
 /// Reads a whole scene.
 pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> {
@@ -27,6 +28,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     let mut curl_table = root.table("curl")?;
     let mut scheme_table = root.table("scheme")?;
     let mut time_table = root.table("time")?;
+    let mut watch_table = root.table("watch")?;
     let output_tables = root.tables("output")?;
     let regrid_tables = root.tables("regrid")?;
     root.finish()?;
@@ -55,6 +57,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         end,
         outputs: super::outputs::outputs(output_tables, &super::build::laws(&materials), start)?,
         materials,
+        watch: watch(watch_table.as_mut())?,
         regrids: super::regrid::regrids(regrid_tables)?,
         origin: Origin::default(),
     };
@@ -337,6 +340,22 @@ fn curl(table: Option<&mut Reader>, degree: usize) -> Result<Curl> {
     });
     table.finish()?;
     Ok(curl)
+}
+
+fn watch(table: Option<&mut Reader>) -> Result<Option<Limits>> {
+    let Some(table) = table else { return Ok(Some(Limits::default())) };
+    let off = table.is_text("energy", "off");
+    let stop = if off { table.text("energy")?.map(|_| f64::INFINITY) } else { table.number("energy", POSITIVE)? };
+    let warn = table.number("warn", POSITIVE)?;
+    table.finish()?;
+    let stop = stop.unwrap_or(Limits::default().stop);
+    let warn = warn.unwrap_or(Limits::default().warn.min(stop));
+    if off && table.has("warn") || warn > stop {
+        let what =
+            format!("the run would warn at {warn}, and {}", if off { "the watch is off" } else { "stop before" });
+        return Err(table.wrong("warn", what, "give a share up to that of `energy`, or leave it out"));
+    }
+    Ok((!off).then_some(Limits { warn, stop }))
 }
 
 fn time(table: &mut Reader) -> Result<(f64, f64)> {

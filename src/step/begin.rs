@@ -1,6 +1,7 @@
 //! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
 
-use super::balance::{self, Sums};
+use super::balance::Sums;
+use super::outside::{Given, SourceStage};
 use super::phase::Clock;
 use super::predictor::Predictor;
 use super::predictor::transfer::{FieldsToPoints, ToNodes};
@@ -33,6 +34,8 @@ pub(super) struct Block<'a> {
     pub rate: &'a mut [F8],
     /// Traces of this block (out).
     pub traces: &'a mut [F8],
+    /// The work that is done on it from outside (begun here at the first stage); none where nothing outside touches it.
+    pub given: Option<&'a mut Given>,
     /// Its balance of energy (begun here at the first stage); none where it is off.
     pub sums: Option<&'a mut Sums>,
     /// The thread's arrays.
@@ -85,10 +88,10 @@ impl Work for Extras<'_, '_> {
                     factor.mul_add(L::load(&nodes.source[k * n + a]), L::load(rate)).store(rate);
                 }
             }
-            if let Some(sums) = block.sums.as_mut() {
-                let power = balance::source_power::<L>(density, &nodes.masses, &nodes.mean, &nodes.source);
-                let dt = L::splat(block.stage.dt * block.scheme.weight(block.stage.number));
-                balance::add(dt, power, &mut sums.source_work);
+            if let Some(given) = block.given.as_deref_mut() {
+                let (masses, mean, source) = (&nodes.masses, &nodes.mean, &nodes.source);
+                let factor = block.stage.dt * block.scheme.weight(block.stage.number);
+                SourceStage { density, factor, masses, mean, source, given }.add::<L>();
             }
         }
         if block.state.has_displacement() {
@@ -131,8 +134,9 @@ impl Block<'_> {
             arrays: &mut self.scratch.nodes,
             rate: self.rate,
         }));
-        if let (0, Some(sums)) = (self.stage.number, self.sums.as_mut()) {
-            **sums = Sums::default();
+        if self.stage.number == 0 {
+            self.given.iter_mut().for_each(|given| **given = Given::default());
+            self.sums.iter_mut().for_each(|sums| **sums = Sums::default());
         }
         if !self.scheme.sources.is_empty() {
             self.source_at_nodes();

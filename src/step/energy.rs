@@ -1,8 +1,11 @@
-//! Totals of a state by grid quadrature (sums over points with volumes are wrong for most layouts).
+//! Totals of a state by grid quadrature (sums over points with volumes are wrong for most layouts). What a law with memory
+//! stores and dissipates is known at its points alone, from their own F and history: there the weights are int chi_p dX.
 
 use super::Scheme;
+use super::predictor::transfer::{FieldsToPoints, factors};
+use crate::lane::{Coefficient, F8};
 use crate::mesh::map;
-use crate::operators::determinant;
+use crate::operators::{PointMatrices, Share, determinant};
 use crate::state::{State, UNKNOWNS};
 use crate::tensor;
 use rayon::prelude::*;
@@ -27,6 +30,19 @@ pub struct Totals {
     pub min_j: f64,
     /// Largest |dF_i2/dX_1 - dF_i1/dX_2| at the nodes, 1/m.
     pub max_curl: f64,
+}
+
+/// Energy that was made out of nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EnergyMade {
+    /// J/m.
+    pub joule: f64,
+    /// Over the largest of the energy at the start, the work done so far, and what is told from rounding.
+    pub share: f64,
+    /// When it was found, s.
+    pub time: f64,
+    /// After so many steps.
+    pub step: usize,
 }
 
 impl Totals {
@@ -77,7 +93,11 @@ impl Scheme {
             .into_par_iter()
             .map(|block| {
                 let mut sum = Totals::empty(state);
-                (0..self.operators.blocks.count[block]).for_each(|lane| sum.add(&self.totals_of(state, block, lane)));
+                let points = self.deformation_at_points(state, block);
+                for lane in 0..self.operators.blocks.count[block] {
+                    sum.add(&self.totals_of(state, block, lane));
+                    sum.add(&self.stored_at_points(state, block, lane, &points));
+                }
                 sum
             })
             .collect();
@@ -89,21 +109,56 @@ impl Scheme {
     fn totals_of(&self, state: &State, block: usize, lane: usize) -> Totals {
         let (n, law) = (self.operators.nodes(), &self.laws[self.operators.blocks.material[block]]);
         let u = &state.u[block * state.components * n..];
+        let memory = !law.internal().is_empty();
         let mut sum = Totals::empty(state);
         for (a, mass) in self.operators.geometry.masses(&self.operators.line, block, lane).enumerate() {
             let [f11, f12, f21, f22, p1, p2]: [f64; 6] = std::array::from_fn(|k| u[k * n + a].0[lane]);
             let f = [f11, f12, f21, f22];
-            let response = law.response(f, &self.internal_at_node(state, block, lane, a));
             sum.add(&Totals {
                 kinetic: mass * (p1 * p1 + p2 * p2) / (2.0 * law.density()),
-                strain: mass * response.energy,
-                plastic: sum.plastic.map(|_| mass * response.dissipated),
+                strain: if memory { 0.0 } else { mass * law.energy(f) },
+                plastic: sum.plastic.map(|_| 0.0),
                 momentum: [mass * p1, mass * p2],
                 angular_momentum: self.position(state, block, lane, a).map(|x| mass * (x[0] * p2 - x[1] * p1)),
                 deformation: f.map(|x| mass * x),
                 min_j: tensor::det(f),
                 max_curl: self.curl(u, block, lane, a),
             });
+        }
+        sum
+    }
+
+    /// F at the points of a block whose law has memory, [point][4]; empty for an elastic law.
+    fn deformation_at_points(&self, state: &State, block: usize) -> Vec<F8> {
+        let count = self.histories.weights(block).len();
+        let (n, m) = (self.operators.nodes(), self.operators.line.m);
+        let u = &state.u[block * state.components * n..][..4 * n];
+        let mut points = vec![F8::ZERO; 4 * count];
+        match self.operators.points.as_ref().map(|points| (&points.pool, points.pool.share[block])) {
+            _ if count == 0 => {}
+            None => super::dense::interleave::<4>(u, n, &mut points),
+            Some((pool, Share::Shared(k))) => self.to_points(&pool.shared[k], u, m, &mut points),
+            Some((pool, Share::Own(k))) => self.to_points(&pool.own[k], u, m, &mut points),
+        }
+        points
+    }
+
+    fn to_points<C: Coefficient>(&self, matrices: &PointMatrices<C>, fields: &[F8], m: usize, points: &mut [F8]) {
+        let (mut nodes, mut between) = (fields.to_vec(), vec![F8::ZERO; factors(m, matrices.points(), 4)]);
+        let (nodes, between) = (&mut nodes[..], &mut between[..]);
+        self.kernel.run(FieldsToPoints::<C, 4> { matrices, fields, nodes, between, points });
+    }
+
+    /// What a law with memory stores and has dissipated in a lane, from F at the points. A point is where the last step has
+    /// left it, so that the law returns nothing once more.
+    fn stored_at_points(&self, state: &State, block: usize, lane: usize, points: &[F8]) -> Totals {
+        let law = &self.laws[self.operators.blocks.material[block]];
+        let mut sum = Totals::empty(state);
+        let at_points = points.as_chunks::<4>().0.iter().zip(self.histories.weights(block));
+        for (p, (f, weight)) in at_points.enumerate() {
+            let response = law.response(f.map(|f| f.0[lane]), &self.internal_at(state, block, lane, p));
+            sum.strain += weight.0[lane] * response.energy;
+            sum.plastic = sum.plastic.map(|plastic| plastic + weight.0[lane] * response.dissipated);
         }
         sum
     }

@@ -1,8 +1,10 @@
 //! `finish`: with the neighbours' traces, flux (3), lift (14), and after the last stage the update (13), LCF, the internal
 //! variables and the survey of what has come out.
 
-use super::balance::{self, Sums};
+use super::balance::Sums;
+use super::block_energy::BlockEnergy;
 use super::curl;
+use super::outside::{Given, SourceEnd};
 use super::sums::Terms;
 use super::survey::{Examine, History, Worst};
 use super::volume::{Masses, cofactors, row, with_nodes};
@@ -11,7 +13,6 @@ use crate::lane::{F8, Lanes, Work};
 use crate::operators::curl_free::Relax;
 use crate::operators::{Line, Metric, determinant};
 use crate::state::State;
-use crate::with_law;
 
 /// The work on one block.
 pub(super) struct Block<'a> {
@@ -33,6 +34,8 @@ pub(super) struct Block<'a> {
     pub traces: across::Traces<'a>,
     /// What the last stage makes; none before it.
     pub new: Option<New<'a>>,
+    /// The work that is done on it from outside; none where nothing outside touches it.
+    pub given: Option<&'a mut Given>,
     /// Its balance of energy; none where it is off.
     pub sums: Option<&'a mut Sums>,
     /// The thread's arrays.
@@ -57,39 +60,26 @@ impl Block<'_> {
         let (kernel, operators) = (self.scheme.kernel, &self.scheme.operators);
         let mut clock = self.scratch.phases.clock();
         let place = flux::Place { scheme: self.scheme, stage: self.stage, block: self.block };
-        flux::lift(place, &self.traces, &mut self.scratch.nodes, self.sums.as_deref_mut());
+        let books = flux::Books { given: self.given.as_deref_mut(), sums: self.sums.as_deref_mut() };
+        flux::lift(place, &self.traces, &mut self.scratch.nodes, books);
         let (line, metric, lift) = (&operators.line, place.metric(), &self.scratch.nodes.lift);
         with_nodes!(line.m, M => kernel.run(Lift::<'_, M> { line, metric, lift, rate: self.rate }));
         self.scratch.phases.book(Phase::Flux, &mut clock);
         let Some(New { u, internal, speed, worst }) = self.new.take() else { return };
         kernel.run(Update(&mut self, u));
         self.scratch.phases.book(Phase::Corrector, &mut clock);
+        if !self.scheme.sources.is_empty() {
+            self.meter_sources(u);
+        }
+        self.meter(u, |sums, energy| (sums.corrected, sums.energy) = (energy, energy));
         if self.scheme.curl.is_some() {
-            self.meter(1.0, u);
             with_nodes!(line.m, M => kernel.run(Project::<'_, '_, M>(&mut self, u)));
-            self.meter(-1.0, u);
+            self.meter(u, |sums, energy| sums.energy = energy);
         }
         self.scratch.phases.book(Phase::CurlFree, &mut clock);
         let Self { scheme, block, scratch, .. } = self;
         let history = History::Before(scheme.histories.of(&self.state.internal, block), internal);
         kernel.run(Examine { scheme, block, u, history, scratch, speed, worst });
-    }
-}
-
-/// Adds a factor times the strain energy of a block to what LCF dissipates.
-struct Meter<'a, 'b>(&'a mut Block<'b>, f64, &'a [F8]);
-
-impl Work for Meter<'_, '_> {
-    type Out = ();
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self(block, factor, next) = self;
-        let law = &block.scheme.laws[block.scheme.operators.blocks.material[block.block]];
-        let (mass, internal) = (&block.scratch.nodes.masses, &block.scratch.nodes.internal);
-        let energy = with_law!(law, law => balance::strain_energy::<L, _>(law, mass, next, internal));
-        if let Some(sums) = block.sums.as_mut() {
-            balance::add(L::splat(factor), energy, &mut sums.curl_dissipation);
-        }
     }
 }
 
@@ -116,18 +106,24 @@ impl<const M: usize> Work for Project<'_, '_, M> {
 }
 
 impl Block<'_> {
-    /// Adds `factor` times the strain energy of `next` to what LCF dissipates, where that is metered.
-    fn meter(&mut self, factor: f64, next: &[F8]) {
-        if self.sums.is_none() {
-            return;
-        }
-        let (scheme, operators, nodes) = (self.scheme, &self.scheme.operators, &mut self.scratch.nodes);
+    /// Books the work of sources in the step to `u`.
+    fn meter_sources(&mut self, u: &[F8]) {
+        let Some(given) = self.given.as_deref_mut() else { return };
+        let (operators, n, stride) = (&self.scheme.operators, self.scheme.operators.nodes(), self.rate.len());
         let (line, metric) = (&operators.line, &operators.geometry.blocks[self.block]);
-        let masses = &mut nodes.masses;
-        with_nodes!(line.m, M => { scheme.kernel.run(Masses::<'_, M> { line, metric, masses }); });
-        let variables = scheme.laws[operators.blocks.material[self.block]].internal().len();
-        scheme.histories.at_nodes(&self.state.internal, self.block, variables, &mut nodes.internal);
-        scheme.kernel.run(Meter(self, factor, next));
+        let masses = &mut self.scratch.nodes.masses;
+        with_nodes!(line.m, M => { self.scheme.kernel.run(Masses::<'_, M> { line, metric, masses }); });
+        let momenta = 4 * n..6 * n;
+        let before = &self.state.u[stride * self.block..][momenta.clone()];
+        self.scheme.kernel.run(SourceEnd { masses, before, after: &u[momenta], given });
+    }
+
+    /// Books the energy of `u` where the balance is on.
+    fn meter(&mut self, u: &[F8], book: impl Fn(&mut Sums, F8)) {
+        let Some(sums) = self.sums.as_deref_mut() else { return };
+        let (scheme, block) = (self.scheme, self.block);
+        let internal = scheme.histories.of(&self.state.internal, block);
+        book(sums, BlockEnergy { scheme, block, u, internal, scratch: self.scratch }.find());
     }
 
     /// U^(n+1) = U^n + dt sum_s b_s k_s.

@@ -1,7 +1,8 @@
 //! Fluxes (3) of the four faces of a block, lifted: len (Flux* - own flux of the F rows).
 
 use super::across::{Aligned, Apart, Beyond, Joined, LaneByLane, Other, Traces};
-use super::balance::{FacePower, Sums};
+use super::balance::{FacePower, Sums, boundary_loss, boundary_power};
+use super::outside::Given;
 use super::volume::{Arrays, width};
 use super::{Scheme, Stage};
 use crate::boundary::FacePoint;
@@ -123,7 +124,15 @@ struct Sides<'a> {
     other: &'a Beyond<'a>,
 }
 
-/// What a face adds to the balance of the block. The fluxes are found once more: without the balance they never come to
+/// Where the energy that passes the faces of a block is booked.
+pub(super) struct Books<'a> {
+    /// The work of the boundary; none where the block has none.
+    pub given: Option<&'a mut Given>,
+    /// The balance; none where it is off.
+    pub sums: Option<&'a mut Sums>,
+}
+
+/// What a face between cells adds to the balance of the block. The fluxes are found once more: without the balance they never come to
 /// memory.
 struct Meter<'a, 'b> {
     place: Place<'a>,
@@ -158,26 +167,30 @@ impl Meter<'_, '_> {
             store_array(beyond, &mut there);
             (metric.length(face) * L::splat(*weight * factor)).store(&mut scale);
             for (lane, neighbour) in neighbours.iter().enumerate() {
-                let Some(special) = place.special(face, point, lane, own, sides.other) else { continue };
-                (0..6).for_each(|k| flux[k].0[lane] = special[k]);
-                if matches!(neighbour, Neighbour::Boundary(_)) {
-                    // Lanes at a boundary see themselves: they have no jumps.
-                    (0..W).for_each(|k| there[k].0[lane] = own[k].0[lane]);
-                    let at = place.metric().lane(lane).normal(face);
-                    FacePower { minus: own, plus: own, flux: &flux }.boundary(&scale, at, lane, sums);
+                match neighbour {
+                    // What a condition loses is booked with its work; it has no jumps, and no flux that means anything.
+                    Neighbour::Boundary(_) => {
+                        (0..W).for_each(|k| there[k].0[lane] = own[k].0[lane]);
+                        flux.iter_mut().for_each(|flux| flux.0[lane] = 0.0);
+                    }
+                    Neighbour::Interface(..) => {
+                        let special = place.special(face, point, lane, own, sides.other);
+                        special.iter().for_each(|special| (0..6).for_each(|k| flux[k].0[lane] = special[k]));
+                    }
+                    Neighbour::Cell(_) | Neighbour::Padding => {}
                 }
             }
             let power = FacePower { minus: own, plus: &there, flux: &flux };
-            power.jumps::<L, W>(&scale, normal, &mut sums.flux_dissipation);
+            power.jumps::<L, W>(&scale, normal, &mut sums.flux);
         }
     }
 }
 
-/// Lifted numbers of all faces of a block into `nodes.lift`; what they add to the balance into `sums`.
-pub(super) fn lift(place: Place, traces: &Traces, nodes: &mut Arrays, mut sums: Option<&mut Sums>) {
+/// Lifted numbers of all faces of a block into `nodes.lift`; the energy that they pass into `books`.
+pub(super) fn lift(place: Place, traces: &Traces, nodes: &mut Arrays, mut books: Books) {
     let Place { scheme, block, .. } = place;
     let (blocks, m) = (&scheme.operators.blocks, scheme.operators.line.m);
-    let (flux, metered) = (scheme.flux, sums.is_some());
+    let (flux, metered) = (scheme.flux, books.sums.is_some());
     let width = width(flux.has_shear(), metered);
     let length = m * width;
     let plan = &blocks.plan[block];
@@ -199,9 +212,9 @@ pub(super) fn lift(place: Place, traces: &Traces, nodes: &mut Arrays, mut sums: 
     for face in 0..4 {
         let sides = Sides { face, own: &own[face * length..][..length], other: &other[face] };
         if plan[face].special {
-            place.put_right(sides, &mut nodes.lift[6 * m * face..6 * m * (face + 1)]);
+            place.put_right(sides, &mut nodes.lift[6 * m * face..6 * m * (face + 1)], &mut books);
         }
-        if let Some(sums) = &mut sums {
+        if let Some(sums) = &mut books.sums {
             scheme.kernel.run(Meter { place, sides, sums });
         }
     }
@@ -226,9 +239,12 @@ impl<'a> Place<'a> {
         Medium::new(self.law(), self.scheme.operators.degree)
     }
 
-    /// The lifted numbers of lanes at a boundary or at another material, in `lift`, [point][6].
-    fn put_right(&self, sides: Sides, lift: &mut [F8]) {
-        let (face, width) = (sides.face, sides.own.len() / self.scheme.operators.line.m);
+    /// The lifted numbers of lanes at a boundary or at another material, in `lift`, [point][6]; what passes the boundary into
+    /// `books`.
+    fn put_right(&self, sides: Sides, lift: &mut [F8], books: &mut Books) {
+        let line = &self.scheme.operators.line;
+        let (face, width) = (sides.face, sides.own.len() / line.m);
+        let factor = self.stage.dt * self.scheme.weight(self.stage.number);
         for (point, (own, lift)) in sides.own.chunks_exact(width).zip(lift.as_chunks_mut::<6>().0).enumerate() {
             for lane in 0..LANES {
                 let Some(flux) = self.special(face, point, lane, own, sides.other) else { continue };
@@ -237,6 +253,14 @@ impl<'a> Place<'a> {
                 for (k, flux) in flux.iter().enumerate() {
                     let own = if k < 4 { own[4 + k / 2].0[lane] * normal[k % 2] } else { 0.0 };
                     lift[k].0[lane] = (flux + own) * length;
+                }
+                let neighbour = &self.scheme.operators.blocks.neighbours[self.block][face][lane];
+                if let (Some(given), Neighbour::Boundary(_)) = (&mut books.given, neighbour) {
+                    let weight = line.basis.weights[point] * length * factor;
+                    given.boundary.0[lane] += weight * boundary_power(&flux, normal);
+                    if let Some(sums) = &mut books.sums {
+                        sums.boundary.0[lane] += weight * boundary_loss(own, &flux, normal, lane);
+                    }
                 }
             }
         }

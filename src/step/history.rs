@@ -9,20 +9,20 @@ use super::survey::Strided;
 use crate::cloud::Cloud;
 use crate::lane::{F8, LANES, Lanes};
 use crate::material::{Internal, Law, MOST_INTERNAL, Material};
-use crate::operators::Operators;
+use crate::operators::{Operators, Share};
 use crate::state::State;
 use std::ops::Range;
 
 /// Where the internal variables of each block lie in [`State::internal`], `[point][variable]`. Nothing where no law has
 /// any.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Histories {
     /// By block (length: blocks + 1).
     first: Vec<usize>,
-    /// For each node of each block with memory the point whose history stands for it, see [`nearest`].
-    nearest: Vec<[u32; LANES]>,
-    /// Where the nodes of each block begin in `nearest`.
-    first_node: Vec<usize>,
+    /// int chi_p dX over the cell for the points of each block with memory, m^2, see [`Histories::weights`].
+    weights: Vec<F8>,
+    /// Where the points of each block begin in `weights`.
+    first_point: Vec<usize>,
 }
 
 impl Histories {
@@ -31,14 +31,14 @@ impl Histories {
         if laws.iter().all(|law| law.internal().is_empty()) {
             return Self::default();
         }
-        let mut out = Self { first: vec![0], nearest: vec![], first_node: vec![0] };
+        let mut out = Self { first: vec![0], weights: vec![], first_point: vec![0] };
         for (block, &material) in operators.blocks.material.iter().enumerate() {
             let variables = laws[material].internal().len();
             out.first.push(out.first[block] + variables * operators.block_points(block));
             if variables > 0 {
-                out.nearest.extend(nearest_of_block(operators, block));
+                out.weights.extend(weights_of_block(operators, block));
             }
-            out.first_node.push(out.nearest.len());
+            out.first_point.push(out.weights.len());
         }
         out
     }
@@ -68,21 +68,14 @@ impl Histories {
         &internal[self.range(block)]
     }
 
-    /// The point whose history stands for a node, in each lane.
-    fn nearest(&self, block: usize) -> &[[u32; LANES]] {
-        match self.first_node.get(block..block + 2) {
-            Some(&[from, to]) => &self.nearest[from..to],
+    /// w_p = int chi_p dX over the cell, m^2, for the points of a block; none for an elastic one. The integral over a cell of
+    /// what is known at the points alone, since f = sum_p chi_p f_p is what the grid sees of it: exact for the full Q_N. They
+    /// are of either sign where the points lie far from the nodes.
+    #[inline]
+    pub(super) fn weights(&self, block: usize) -> &[F8] {
+        match self.first_point.get(block..block + 2) {
+            Some(&[from, to]) => &self.weights[from..to],
             _ => &[],
-        }
-    }
-
-    /// Those that stand for the nodes of a block, `[node][variable]`, into `out`.
-    pub(super) fn at_nodes(&self, internal: &[F8], block: usize, variables: usize, out: &mut [F8]) {
-        let (own, nearest) = (self.of(internal, block), self.nearest(block));
-        for (out, points) in out.chunks_exact_mut(variables.max(1)).zip(nearest) {
-            for (k, out) in out.iter_mut().enumerate() {
-                *out = F8(std::array::from_fn(|lane| own[points[lane] as usize * variables + k].0[lane]));
-            }
         }
     }
 }
@@ -97,14 +90,18 @@ pub fn nearest(points: impl Iterator<Item = [f64; 2]>, xi: [f64; 2]) -> usize {
     points.enumerate().fold((0, f64::INFINITY), closer).0
 }
 
-/// [`nearest`] for all nodes of a block.
-fn nearest_of_block(operators: &Operators, block: usize) -> Vec<[u32; LANES]> {
-    let lists: [Vec<[f64; 2]>; LANES] = std::array::from_fn(|lane| operators.places(block, lane));
-    let of_node = |a: usize| {
-        let xi = operators.line.basis.node_2d(a);
-        std::array::from_fn(|lane| nearest(lists[lane].iter().copied(), xi) as u32)
-    };
-    (0..operators.nodes()).map(of_node).collect()
+/// The [`Histories::weights`] of a block: the masses, where its points are the nodes.
+fn weights_of_block(operators: &Operators, block: usize) -> Vec<F8> {
+    let mut masses = vec![F8::ZERO; operators.nodes()];
+    for lane in 0..LANES {
+        let of_lane = operators.geometry.masses(&operators.line, block, lane);
+        masses.iter_mut().zip(of_lane).for_each(|(out, mass)| out.0[lane] = mass);
+    }
+    match operators.points.as_ref().map(|points| (&points.pool, points.pool.share[block])) {
+        None => masses,
+        Some((pool, Share::Shared(k))) => pool.shared[k].integrals(&masses),
+        Some((pool, Share::Own(k))) => pool.own[k].integrals(&masses),
+    }
 }
 
 /// The internal variables of a point of a block, for a law.
@@ -145,12 +142,6 @@ impl Scheme {
             *out = stored.0[lane];
         }
         out
-    }
-
-    /// Those of the point whose history stands for a node.
-    pub(super) fn internal_at_node(&self, state: &State, block: usize, lane: usize, node: usize) -> Internal<f64> {
-        let point = self.histories.nearest(block).get(node).map_or(0, |points| points[lane] as usize);
-        self.internal_at(state, block, lane, point)
     }
 
     /// Where internal variables stand: the points of each cell, in the order of the mesh and the cloud.

@@ -7,6 +7,7 @@
 mod across;
 mod balance;
 mod begin;
+mod block_energy;
 pub mod cfl;
 mod curl;
 mod curl_core;
@@ -15,6 +16,7 @@ mod energy;
 mod finish;
 mod flux;
 pub mod history;
+mod outside;
 pub mod phase;
 mod predictor;
 mod runge_kutta;
@@ -29,7 +31,7 @@ mod volume;
 pub use crate::operators::curl_free::Relax;
 pub use balance::Balance;
 pub use curl::Control;
-pub use energy::Totals;
+pub use energy::{EnergyMade, Totals};
 pub use history::Histories;
 pub use phase::{Phase, Phases};
 pub use runge_kutta::Tableau;
@@ -90,6 +92,8 @@ pub struct Work {
     speed: Vec<survey::Speeds>,
     /// Rates and traces under way.
     tiles: schedule::Tiles,
+    /// The work that the outside did in the step.
+    outside: outside::Outside,
     /// The balance of the step, by block; none where nobody asks for it.
     balance: Option<Vec<balance::Sums>>,
     /// One a thread.
@@ -112,11 +116,10 @@ impl Work {
         let operators = &scheme.operators;
         let points =
             operators.points.as_ref().map_or(0, |p| p.first.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0));
-        let variables = scheme.laws.iter().map(|law| law.internal().len()).max().unwrap_or(0);
         let scratch = || {
             Mutex::new(Scratch {
                 points: predictor::Arrays::new(points, operators.line.m, &scheme.method, !scheme.sources.is_empty()),
-                nodes: volume::Arrays::new(operators.line.m, state.components, variables),
+                nodes: volume::Arrays::new(operators.line.m, state.components),
                 phases: phase::Ticks::of(2 * operators.blocks.len() * scheme.stages()),
             })
         };
@@ -124,6 +127,7 @@ impl Work {
             next: state.clone(),
             speed: vec![survey::Speeds::default(); operators.blocks.len()],
             tiles: schedule::Tiles::new(scheme, state.components * operators.nodes()),
+            outside: outside::Outside::new(scheme),
             balance: None,
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
             rate: phase::Rate::start(),
@@ -143,7 +147,9 @@ impl Work {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let numbers = self.next.u.len() + self.next.internal.len() + 2 * self.speed.len() + self.tiles.numbers();
-        numbers * size_of::<F8>() + self.balance.as_ref().map_or(0, |sums| size_of_val(&sums[..]))
+        numbers * size_of::<F8>()
+            + self.outside.bytes()
+            + self.balance.as_ref().map_or(0, |sums| size_of_val(&sums[..]))
     }
 }
 

@@ -1,6 +1,7 @@
 //! The stages of a step on all blocks, by the plan of [`tiles`].
 
 use super::balance::Sums;
+use super::outside::{self, Given};
 use super::survey::{Speeds, Worst};
 use super::tiles::{self, Event, Plan, Slot};
 use super::{Scheme, Scratch, Stage, Survey, Work, across, begin, finish, volume, with_scratch};
@@ -118,7 +119,7 @@ impl Pass<'_> {
 
     fn begin(&mut self, event: &Event) {
         let Self { step, tile, shown, out, scratch } = self;
-        let Step { scheme, stages, state, survey, slots, far, .. } = *step;
+        let Step { scheme, stages, state, survey, slots, outside, far, .. } = *step;
         let (block, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
         let blocks = scheme.operators.blocks.len();
         if let (0, Some(later)) = (stage.number, tile.plan.after(block, AHEAD)) {
@@ -141,6 +142,7 @@ impl Pass<'_> {
             before,
             rate: &mut now[..stride],
             traces: &mut traces[1 + slot.index as usize * numbers..][..numbers],
+            given: outside::entry(outside, out.first, out.given, block),
             sums: out.balance.as_mut().and_then(|sums| sums.get_mut(block - out.first)),
             scratch,
         };
@@ -149,7 +151,7 @@ impl Pass<'_> {
 
     fn finish(&mut self, event: &Event) {
         let Self { step, tile, shown, out, scratch } = self;
-        let Step { scheme, stages, state, survey, slots, seen, far, .. } = *step;
+        let Step { scheme, stages, state, survey, slots, outside, seen, far, .. } = *step;
         let (block, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
         let (blocks, at) = (scheme.operators.blocks.len(), block - out.first);
         let stride = state.components * scheme.operators.nodes();
@@ -183,6 +185,7 @@ impl Pass<'_> {
             rate: &mut now[..stride],
             traces: across::Traces { own: &tile.traces, seen, shown, slots },
             new,
+            given: outside::entry(outside, out.first, out.given, block),
             sums: out.balance.as_mut().and_then(|sums| sums.get_mut(at)),
             scratch,
         };
@@ -200,6 +203,8 @@ struct Out<'a> {
     internal: &'a mut [F8],
     /// New wave speeds.
     speed: &'a mut [Speeds],
+    /// The work on those blocks that something outside acts on.
+    given: &'a mut [Given],
     /// The balance of the blocks; none where it is off.
     balance: Option<&'a mut [Sums]>,
 }
@@ -217,18 +222,19 @@ impl<'a> Out<'a> {
     /// The same for a shorter time.
     fn again(&mut self) -> Out<'_> {
         let balance = self.balance.as_deref_mut();
-        Out { first: self.first, u: self.u, internal: self.internal, speed: self.speed, balance }
+        Out { first: self.first, u: self.u, internal: self.internal, speed: self.speed, given: self.given, balance }
     }
 
-    /// Those of the first `blocks`, with so many internal variables, and the rest.
-    fn split(self, blocks: usize, stride: usize, internal: usize) -> (Self, Self) {
+    /// Those of the first `blocks`, with so many internal variables and entries of `given`, and the rest.
+    fn split(self, blocks: usize, stride: usize, [internal, given]: [usize; 2]) -> (Self, Self) {
         let (first, second) = (self.first, self.first + blocks);
         let (u, u2) = self.u.split_at_mut(blocks * stride);
         let (internal, internal2) = self.internal.split_at_mut(internal);
         let (speed, speed2) = self.speed.split_at_mut(blocks);
+        let (given, given2) = self.given.split_at_mut(given);
         let (balance, balance2) = self.balance.map(|sums| sums.split_at_mut(blocks)).unzip();
-        let left = Out { first, u, internal, speed, balance };
-        (left, Out { first: second, u: u2, internal: internal2, speed: speed2, balance: balance2 })
+        let left = Out { first, u, internal, speed, given, balance };
+        (left, Out { first: second, u: u2, internal: internal2, speed: speed2, given: given2, balance: balance2 })
     }
 }
 
@@ -240,6 +246,8 @@ struct Step<'a> {
     state: &'a State,
     survey: &'a Survey,
     slots: &'a [Slot],
+    /// See [`outside::Outside::first`].
+    outside: &'a [u32],
     far: bool,
     scratch: &'a [Mutex<Scratch>],
     phase: usize,
@@ -259,8 +267,10 @@ impl Step<'_> {
                 let ((left, right), (shown, shown2)) = (tiles.split_at_mut(half), shown.split_at_mut(half));
                 let (start, middle) = (left[0].plan.range.start, right[0].plan.range.start);
                 let first = |block| self.scheme.histories.range(block).start;
+                let entries = |block: usize| self.outside[block] as usize;
+                let numbers = [first(middle) - first(start), entries(middle) - entries(start)];
                 let stride = self.state.components * self.scheme.operators.nodes();
-                let (one, two) = out.split(middle - start, stride, first(middle) - first(start));
+                let (one, two) = out.split(middle - start, stride, numbers);
                 rayon::join(|| self.run(left, shown, one), || self.run(right, shown2, two));
             }
             _ => {}
@@ -271,13 +281,16 @@ impl Step<'_> {
 impl Scheme {
     /// All stages of a step.
     pub(super) fn run_stages(&self, stages: &[Stage], state: &State, survey: &Survey, work: &mut Work) {
-        let Work { tiles: Tiles { tiles, phases, shown, slots, far, .. }, next, speed, balance, scratch, .. } = work;
+        let Work {
+            tiles: Tiles { tiles, phases, shown, slots, far, .. }, next, speed, outside, balance, scratch, ..
+        } = work;
         let (u, internal, balance) = (&mut next.u[..], &mut next.internal[..], balance.as_deref_mut());
-        let mut out = Out { first: 0, u, internal, speed, balance };
+        let mut out = Out { first: 0, u, internal, speed, given: &mut outside.given, balance };
         let count = tiles.len();
         for phase in 0..*phases {
             let (seen, shown) = shown.split_at_mut(phase * count);
-            let step = Step { scheme: self, stages, state, survey, slots, far: *far, scratch, phase, seen };
+            let outside = &outside.first[..];
+            let step = Step { scheme: self, stages, state, survey, slots, outside, far: *far, scratch, phase, seen };
             step.run(tiles, &mut shown[..count], out.again());
         }
     }

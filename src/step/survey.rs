@@ -275,7 +275,7 @@ impl Strided<'_> {
 
 /// F of the unknowns of a block at its points; at its nodes, where there are none.
 #[inline(always)]
-fn at_points<'a, L: Lanes>(
+pub(super) fn at_points<'a, L: Lanes>(
     scheme: &Scheme,
     u: &'a [F8],
     block: usize,

@@ -52,8 +52,6 @@ pub struct Arrays {
     pub source: Vec<F8>,
     /// Lifted numbers: [face][face point][6].
     pub lift: Vec<F8>,
-    /// Internal variables that stand for the nodes, [node][variable], for the balance of energy; empty without memory.
-    pub internal: Vec<F8>,
     /// The mass matrix, by node, where it is wanted.
     pub masses: Vec<F8>,
     /// Rows of F in the weighted inner product, and their coefficients, for the curl-free projection.
@@ -63,8 +61,8 @@ pub struct Arrays {
 }
 
 impl Arrays {
-    /// For M nodes a direction, `components` components of the state and `variables` internal variables of a point.
-    pub fn new(m: usize, components: usize, variables: usize) -> Self {
+    /// For M nodes a direction and `components` components of the state.
+    pub fn new(m: usize, components: usize) -> Self {
         let zeros = |count: usize| vec![F8::ZERO; count];
         let n = m * m;
         Self {
@@ -74,7 +72,6 @@ impl Arrays {
             contravariant: zeros(4 * n),
             source: zeros(2 * n),
             lift: zeros(4 * 6 * m),
-            internal: zeros(variables * n),
             masses: zeros(n),
             weighted: zeros(4 * n),
             coefficients: zeros(4 * n),

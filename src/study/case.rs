@@ -239,8 +239,8 @@ pub(super) fn measure(
             Ok(_) => {}
             Err(Stop::Interrupted) => return Err(Error::Interrupted("in a study; its table is kept".into())),
             Err(Stop::Output(why)) => return Err(why),
-            Err(Stop::Unstable(loss)) => {
-                let status = format!("unstable: {}", loss.kind);
+            Err(stop @ (Stop::Unstable(_) | Stop::EnergyMade(_))) => {
+                let status = format!("unstable: {}", why(&stop));
                 return Ok(Record { predicted, ..Record::new(case, sizes, &Report::default(), None, status) });
             }
         }
@@ -252,6 +252,15 @@ pub(super) fn measure(
     let errors = reference.errors(&built, &state);
     let record = Record::new(case, sizes, &report, Some(errors), "done".into());
     Ok(Record { predicted, h: smallest_h(&built.mesh), ..record })
+}
+
+/// Why a run lost stability, in a few words.
+pub fn why(stop: &Stop) -> String {
+    match stop {
+        Stop::Unstable(loss) => loss.kind.to_string(),
+        Stop::EnergyMade(made) => format!("it made {:.0} % of its energy out of nothing", 100.0 * made.share),
+        Stop::Interrupted | Stop::Output(_) => "it was stopped".to_owned(),
+    }
 }
 
 /// min_e h_e, m.

@@ -1,6 +1,6 @@
 //! What errors are taken against: the exact solution of the scene, or a finer run of a higher degree.
 
-use super::case::{Built, Case, Series};
+use super::case::{Built, Case, Series, why};
 use crate::cloud::Locator;
 use crate::error::{Error, Result};
 use crate::exact::{Errors, Exact, compare, errors};
@@ -34,7 +34,9 @@ impl Finer {
         let lost = |what: String| Error::input(what, "give another --reference DEGREE,REFINEMENT");
         match built.run(interrupt) {
             Ok((state, _)) => Ok(Self { built, state, case, error: None }),
-            Err(Stop::Unstable(loss)) => Err(lost(format!("the reference run lost stability: {}", loss.kind))),
+            Err(stop @ (Stop::Unstable(_) | Stop::EnergyMade(_))) => {
+                Err(lost(format!("the reference run lost stability: {}", why(&stop))))
+            }
             Err(Stop::Output(why)) => Err(why),
             Err(Stop::Interrupted) => Err(Error::Interrupted("in the reference run of a study".into())),
         }

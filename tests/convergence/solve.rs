@@ -131,7 +131,8 @@ pub fn advanced(problem: &Problem, mesh: &Mesh, scheme: &Scheme) -> Option<State
 /// The state at `end`, from another or from the exact one at t = 0.
 pub fn advance_to(problem: &Problem, mesh: &Mesh, scheme: &Scheme, from: Option<State>, end: f64) -> Option<State> {
     let mut state = from.unwrap_or_else(|| start(problem, mesh, scheme));
-    let settings = Settings { end, courant: problem.safety * cfl::limit(&scheme.method, scheme.operators.degree) };
+    let courant = problem.safety * cfl::limit(&scheme.method, scheme.operators.degree);
+    let settings = Settings { end, courant, watch: None };
     let interrupt = AtomicBool::new(false);
     let mut run = Run { mesh, scheme, settings, observers: vec![], interrupt: &interrupt };
     run.advance(&mut state, &mut Report::default()).ok().map(|()| state)

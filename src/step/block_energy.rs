@@ -1,0 +1,114 @@
+//! The energy of the cells of a block: what the balance meters in a step, and the watch over the energy from time to time.
+
+use super::history::recall;
+use super::survey::at_points;
+use super::volume::{Masses, with_nodes};
+use super::{Scheme, Scratch, Work as Memory, dense, with_scratch};
+use crate::lane::{F8, Lanes, Work};
+use crate::material::Material;
+use crate::state::State;
+use crate::with_law;
+use rayon::prelude::*;
+
+/// sum_a m_a W(F_a), for a law with memory sum_p w_p (W + D)(F_p, h_p) with w_p = int chi_p dX, and the kinetic energy
+/// sum_a m_a |p_a|^2 / (2 rho0); J/m, a lane a cell. D is what plastic flow has dissipated, with one more
+/// return from h_p to F_p where there is one to do.
+pub(super) struct BlockEnergy<'a> {
+    pub scheme: &'a Scheme,
+    pub block: usize,
+    /// Its unknowns.
+    pub u: &'a [F8],
+    /// Its internal variables.
+    pub internal: &'a [F8],
+    /// The thread's arrays.
+    pub scratch: &'a mut Scratch,
+}
+
+impl BlockEnergy<'_> {
+    /// Finds it.
+    pub fn find(self) -> F8 {
+        let operators = &self.scheme.operators;
+        let (line, metric) = (&operators.line, &operators.geometry.blocks[self.block]);
+        let masses = &mut self.scratch.nodes.masses;
+        with_nodes!(line.m, M => { self.scheme.kernel.run(Masses::<'_, M> { line, metric, masses }); });
+        self.scheme.kernel.run(self)
+    }
+}
+
+impl Work for BlockEnergy<'_> {
+    type Out = F8;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> F8 {
+        let Self { scheme, block, u, internal, scratch } = self;
+        let law = &scheme.laws[scheme.operators.blocks.material[block]];
+        let mut out = F8::ZERO;
+        let moving = kinetic_energy::<L>(law.density(), &scratch.nodes.masses, u);
+        let strain = with_law!(law, law => {
+            // A copy: its constants stay in registers.
+            let law = *law;
+            if is_elastic(&law) {
+                at_nodes::<L, _>(law, &scratch.nodes.masses, u)
+            } else {
+                let points = at_points::<L>(scheme, u, block, &mut scratch.nodes, &mut scratch.points);
+                let weights = scheme.histories.weights(block);
+                let mut sum = L::zero();
+                for (p, weight) in weights.iter().enumerate() {
+                    let (f, internal) = (points.at::<L>(p), recall::<L, _>(&law, internal, p));
+                    let internal = &internal[..count_of(&law)];
+                    sum = L::load(weight).mul_add(law.energy(f, internal) + law.dissipated(f, internal), sum);
+                }
+                sum
+            }
+        });
+        (moving + strain).store(&mut out);
+        out
+    }
+}
+
+#[inline(always)]
+fn count_of<M: Material>(_: &M) -> usize {
+    M::INTERNAL.len()
+}
+
+#[inline(always)]
+fn is_elastic<M: Material>(law: &M) -> bool {
+    count_of(law) == 0
+}
+
+#[inline(always)]
+fn at_nodes<L: Lanes, M: Material>(law: M, masses: &[F8], u: &[F8]) -> L {
+    let mut sum = L::zero();
+    for (a, mass) in masses.iter().enumerate() {
+        let f = dense::gather::<L, 4>(u, masses.len(), a);
+        sum = L::load(mass).mul_add(law.energy(f, &[]), sum);
+    }
+    sum
+}
+
+#[inline(always)]
+fn kinetic_energy<L: Lanes>(density: f64, masses: &[F8], u: &[F8]) -> L {
+    let (n, mut sum) = (masses.len(), L::zero());
+    for (a, mass) in masses.iter().enumerate() {
+        let (one, two) = (L::load(&u[4 * n + a]), L::load(&u[5 * n + a]));
+        sum = L::load(mass).mul_add(one.mul_add(one, two * two), sum);
+    }
+    sum * L::splat(0.5 / density)
+}
+
+impl Scheme {
+    /// Kinetic, strain and dissipated energy of a state, J/m: [`super::Totals::accounted`] at a fraction of the cost. `cells` is
+    /// memory for it; cells are added in a fixed order.
+    pub fn energy(&self, state: &State, memory: &Memory, cells: &mut Vec<F8>) -> f64 {
+        let blocks = &self.operators.blocks;
+        let stride = state.components * self.operators.nodes();
+        cells.resize(blocks.len(), F8::ZERO);
+        cells.par_iter_mut().enumerate().for_each(|(block, out)| {
+            *out = with_scratch(&memory.scratch, |scratch| {
+                let u = &state.u[stride * block..stride * (block + 1)];
+                let internal = self.histories.of(&state.internal, block);
+                BlockEnergy { scheme: self, block, u, internal, scratch }.find()
+            });
+        });
+        cells.iter().zip(&blocks.count).map(|(energy, &count)| energy.0[..count].iter().sum::<f64>()).sum()
+    }
+}
