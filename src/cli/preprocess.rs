@@ -8,7 +8,7 @@ use crate::io::operators_file;
 use crate::lane::Kernel;
 use crate::mesh::Mesh;
 use crate::operators::{Certificate, Pool};
-use crate::run::Settings;
+use crate::run::{Kept, Settings};
 use crate::scene::Scene;
 use crate::state::State;
 use crate::step::{Loss, Scheme, Survey, Work, cfl};
@@ -67,7 +67,8 @@ pub fn report(
     for (certificate, &(block, lane)) in certificates.iter_mut().zip(&operators.blocks.slot) {
         certificate.dt = settings.courant * certificate.h / cost.survey.speed[block].0[lane];
     }
-    let memory = operators.bytes() + cost.work + size_of_val(&state.u[..]);
+    let states = size_of_val(&state.u[..]) + size_of_val(&state.internal[..]) + Kept::bytes(state);
+    let memory = operators.bytes() + cost.work + states;
     let mut rows = vec![
         row("method", format!("{} S{}T{}", scene.scheme.method.name(), scene.scheme.degree, scene.scheme.time_degree)),
         row(

@@ -1,10 +1,12 @@
 //! The time loop.
 
 mod folder;
+mod kept;
 mod norms;
 mod report;
 
 pub use folder::Folder;
+pub use kept::{Kept, Lost};
 pub use norms::norms;
 pub use report::{Report, dofs, peak_memory_mib};
 
@@ -24,11 +26,11 @@ pub struct Settings {
     pub courant: f64,
 }
 
-/// Why a run stopped before its end; the state is then the last good one.
+/// Why a run stopped before its end; the state is then the one before the step that failed.
 #[derive(Debug)]
 pub enum Stop {
     /// A step lost stability.
-    Unstable(Loss),
+    Unstable(Box<Lost>),
     /// The user asked for it.
     Interrupted,
     /// An output could not be written.
@@ -38,6 +40,12 @@ pub enum Stop {
 impl From<Error> for Stop {
     fn from(error: Error) -> Self {
         Stop::Output(error)
+    }
+}
+
+impl From<Lost> for Stop {
+    fn from(lost: Lost) -> Self {
+        Stop::Unstable(Box::new(lost))
     }
 }
 
@@ -86,7 +94,7 @@ pub enum End {
 }
 
 impl Run<'_, '_> {
-    /// Steps `state` to the end; it stays at the last good state where the run stops before.
+    /// Steps `state` to the end; where the run stops before, it stays at the state before the step that failed.
     ///
     /// # Errors
     /// See [`Stop`].
@@ -109,8 +117,10 @@ impl Run<'_, '_> {
             work = work.with_balance(self.scheme);
         }
         let mut survey = Survey::default();
-        self.scheme.survey(state, &work, &mut survey).map_err(Stop::Unstable)?;
-        report.start(self.scheme, state, &work);
+        let sick = |loss: Loss| Stop::from(Kept::new(state, &Survey::default()).lost(loss, state, 0.0));
+        self.scheme.survey(state, &work, &mut survey).map_err(sick)?;
+        report.start(self.scheme, state, &survey, &work);
+        let mut kept = Kept::new(state, &survey);
         let h = self.smallest_h();
         let mut next = survey.clone();
         while state.time < self.settings.end {
@@ -129,11 +139,19 @@ impl Run<'_, '_> {
             if (stop - work.next.time).abs() < 1e-9 * dt {
                 work.next.time = stop;
             }
-            self.scheme.surveyed(&mut work, &mut next).map_err(Stop::Unstable)?;
+            if let Err(loss) = self.scheme.surveyed(&mut work, &mut next) {
+                return Err(kept.lost(loss, state, dt).into());
+            }
             std::mem::swap(state, &mut work.next);
             std::mem::swap(&mut survey, &mut next);
+            kept.look(&mut work.next, &next);
             report.count(self.scheme, dt, &survey, &mut work);
         }
+        // No step looks at the faces of the last state.
+        if let Err(loss) = self.scheme.survey(state, &work, &mut next) {
+            return Err(kept.lost(loss, state, 0.0).into());
+        }
+        report.see(&next);
         self.observe(state, &survey, report.balance.as_ref(), 0.0)?;
         Ok(End::Done)
     }

@@ -1,5 +1,6 @@
 //! What a run cost and what became of energy and momentum: the table at its end and `summary.json`.
 
+use super::Kept;
 use crate::state::{State, UNKNOWNS};
 use crate::step::phase::{NAMES, Phases};
 use crate::step::{Balance, Scheme, Survey, Totals, Work};
@@ -22,7 +23,7 @@ pub struct Report {
     pub last: Option<Totals>,
     /// The balance of energy since the start, where an observer wants it.
     pub balance: Option<Balance>,
-    /// min J over all points and steps.
+    /// The smallest J that was seen in a state of the run, at its points, grid nodes and face points.
     pub min_j: f64,
     /// Bytes of operators, state and work.
     pub bytes: usize,
@@ -55,7 +56,8 @@ impl Default for Report {
 }
 
 impl Report {
-    pub(super) fn start(&mut self, scheme: &Scheme, state: &State, work: &Work) {
+    pub(super) fn start(&mut self, scheme: &Scheme, state: &State, survey: &Survey, work: &Work) {
+        self.see(survey);
         // After a pause the clocks and the balance go on.
         if self.first.is_none() {
             self.clock = (Instant::now(), ProcessTime::now());
@@ -63,19 +65,24 @@ impl Report {
             self.balance = work.has_balance().then(|| Balance::starting_at(first.accounted()));
             self.first = Some(first);
         }
-        let state = size_of_val(&state.u[..]) + size_of_val(&state.internal[..]);
-        self.bytes = self.bytes.max(scheme.operators.bytes() + work.bytes() + state);
+        let (start, state) = (state, size_of_val(&state.u[..]) + size_of_val(&state.internal[..]));
+        self.bytes = self.bytes.max(scheme.operators.bytes() + work.bytes() + state + Kept::bytes(start));
     }
 
     pub(super) fn count(&mut self, scheme: &Scheme, dt: f64, survey: &Survey, work: &mut Work) {
         self.steps += 1;
         self.updates += (dofs(scheme) * scheme.stages()) as f64;
         self.dt = [self.dt[0].min(dt), self.dt[1].max(dt)];
-        self.min_j = self.min_j.min(survey.min_j);
+        self.see(survey);
         self.phases.add(&work.take_phases());
         if let Some(balance) = &mut self.balance {
             work.settle(scheme, balance);
         }
+    }
+
+    /// Counts what a survey has seen.
+    pub(super) fn see(&mut self, survey: &Survey) {
+        self.min_j = self.min_j.min(survey.min_j);
     }
 
     /// What a regrid took of the energy, J/m.
@@ -126,7 +133,7 @@ impl Report {
             ("strain_energy", json!(last.strain)),
             ("total_energy_ratio", json!(self.energy_ratio())),
             ("momentum", json!(last.momentum)),
-            ("min_j", json!(self.min_j.min(last.min_j))),
+            ("min_j", json!(self.min_j)),
             ("max_curl_f", json!(last.max_curl)),
         ];
         if let Some(plastic) = last.plastic {

@@ -6,6 +6,7 @@ use super::predictor::Predictor;
 use super::predictor::transfer::{FieldsToPoints, ToNodes};
 use super::stage::AtNodes;
 use super::sums::Terms;
+use super::survey::Worst;
 use super::volume::{self, with_nodes};
 use super::{Method, Phase, Scheme, Scratch, Stage};
 use crate::lane::{Coefficient, F8, LANES, Lanes, Work, prefetch};
@@ -35,6 +36,8 @@ pub(super) struct Block<'a> {
     pub traces: &'a mut [F8],
     /// Its balance of energy (begun here at the first stage); none where it is off.
     pub sums: Option<&'a mut Sums>,
+    /// The worst of the blocks so far.
+    pub worst: &'a mut Worst,
     /// The thread's arrays.
     pub scratch: &'a mut Scratch,
 }
@@ -152,7 +155,12 @@ impl Block<'_> {
             kernel.run(volume::Traces::<'_, M, false> { line, metric, arrays, width, traces });
         });
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
-        kernel.run(volume::Speeds { law, metric, width, shear, traces: self.traces });
+        let mut j = F8::ZERO;
+        kernel.run(volume::Speeds { law, metric, width, shear, traces: self.traces, smallest_j: &mut j });
+        // Later stages of RK are no states: what is wrong with them shows in the state that they make.
+        if self.stage.number == 0 {
+            self.worst.see_faces(&j, self.block, operators.blocks.count[self.block], self.traces, width);
+        }
         self.scratch.phases.book(Phase::Traces, &mut clock);
     }
 

@@ -14,6 +14,7 @@ mod dense;
 mod energy;
 mod finish;
 mod flux;
+mod health;
 pub mod history;
 pub mod phase;
 mod predictor;
@@ -28,10 +29,11 @@ mod volume;
 
 pub use balance::Balance;
 pub use energy::Totals;
+pub use health::Site;
 pub use history::Histories;
 pub use phase::{Phase, Phases};
 pub use runge_kutta::Tableau;
-pub use survey::{Loss, Survey};
+pub use survey::{Loss, LossKind, Survey};
 pub use sweeps::Sweeps;
 
 use crate::basis::TimeBasis;

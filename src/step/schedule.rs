@@ -142,6 +142,7 @@ impl Pass<'_> {
             rate: &mut now[..stride],
             traces: &mut traces[1 + slot.index as usize * numbers..][..numbers],
             sums: out.balance.as_mut().and_then(|sums| sums.get_mut(block - out.first)),
+            worst: &mut tile.worst,
             scratch,
         };
         work.run();

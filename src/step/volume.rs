@@ -3,7 +3,7 @@
 //! F rows in strong form (D v; `finish` adds the lifted jump of v), exact on uniform states; p rows in weak form. Both
 //! are exact integrals on bilinear cells, so the two forms agree there to rounding.
 
-use crate::lane::{F8, Lanes, Twin, Work, load_array, store_array, twins};
+use crate::lane::{F8, Lane, Lanes, Twin, Work, load_array, store_array, twins};
 use crate::material::{Law, Material};
 use crate::operators::{Line, Metric, determinant};
 use crate::riemann::tangent;
@@ -295,6 +295,8 @@ pub struct Speeds<'a> {
     pub shear: bool,
     /// [face][point][`width`]; F in, c out.
     pub traces: &'a mut [F8],
+    /// The smallest J of all of them, out: the determinant is that of the speed, found once.
+    pub smallest_j: &'a mut F8,
 }
 
 impl Work for Speeds<'_> {
@@ -325,24 +327,31 @@ impl Speeds<'_> {
     #[inline(always)]
     fn of_pressure<L: Lanes, M: Material, const W: usize>(&mut self, law: M) {
         let (m, normals) = (self.traces.len() / W / 4, self.normals::<L>());
+        let mut smallest = Twin(L::splat(f64::INFINITY), L::splat(f64::INFINITY));
         for pair in 0..2 * m {
             let (a, b) = (2 * pair, 2 * pair + 1);
             let normals = twins(normals[a / m], normals[b / m]);
             let traces = &mut self.traces.as_chunks_mut::<W>().0[a..a + 2];
             let f = twins(load_array::<L, 4>(&traces[0][..4]), load_array::<L, 4>(&traces[1][..4]));
+            smallest = smallest.min(tensor::det(f));
             let Twin(one, two) = law.pressure_speed(f, normals);
             one.store(&mut traces[0][8]);
             two.store(&mut traces[1][8]);
         }
+        smallest.0.min(smallest.1).store(self.smallest_j);
     }
 
     #[inline(always)]
     fn of_both<L: Lanes, M: Material, const W: usize>(&mut self, law: M) {
         let (m, normals) = (self.traces.len() / W / 4, self.normals::<L>());
+        let mut smallest = L::splat(f64::INFINITY);
         for point in 0..4 * m {
             let normal = normals[point / m];
             let trace = &mut self.traces.as_chunks_mut::<W>().0[point];
-            store_array(law.speeds(load_array::<L, 4>(&trace[..4]), normal), &mut trace[8..10]);
+            let f = load_array::<L, 4>(&trace[..4]);
+            smallest = smallest.min(tensor::det(f));
+            store_array(law.speeds(f, normal), &mut trace[8..10]);
         }
+        smallest.store(self.smallest_j);
     }
 }

@@ -239,8 +239,8 @@ pub(super) fn measure(
             Ok(_) => {}
             Err(Stop::Interrupted) => return Err(Error::Interrupted("in a study; its table is kept".into())),
             Err(Stop::Output(why)) => return Err(why),
-            Err(Stop::Unstable(loss)) => {
-                let status = format!("unstable: {}", loss.kind);
+            Err(Stop::Unstable(lost)) => {
+                let status = format!("unstable: {}", lost.loss.kind);
                 return Ok(Record { predicted, ..Record::new(case, sizes, &Report::default(), None, status) });
             }
         }

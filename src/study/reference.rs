@@ -34,7 +34,7 @@ impl Finer {
         let lost = |what: String| Error::input(what, "give another --reference DEGREE,REFINEMENT");
         match built.run(interrupt) {
             Ok((state, _)) => Ok(Self { built, state, case, error: None }),
-            Err(Stop::Unstable(loss)) => Err(lost(format!("the reference run lost stability: {}", loss.kind))),
+            Err(Stop::Unstable(why)) => Err(lost(format!("the reference run lost stability: {}", why.loss.kind))),
             Err(Stop::Output(why)) => Err(why),
             Err(Stop::Interrupted) => Err(Error::Interrupted("in the reference run of a study".into())),
         }
