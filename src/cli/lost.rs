@@ -153,9 +153,13 @@ impl Case<'_> {
         ))
     }
 
+    fn has_memory(&self) -> bool {
+        !self.built.scheme.histories.is_empty()
+    }
+
     fn points(&self) -> Option<String> {
         let Scene { scheme, cloud, .. } = self.scene;
-        let memory = self.built.scheme.laws.iter().any(|law| !law.internal().is_empty());
+        let memory = self.has_memory();
         let gauss = Layout::InCells(seed::Layout::Gauss);
         if scheme.method != Method::AderDgmpm || cloud.layout == gauss {
             return None;
@@ -174,8 +178,9 @@ impl Case<'_> {
 
     fn flux(&self) -> Option<String> {
         let (flux, other) = (self.scene.scheme.flux, Flux::Rusanov);
-        let name = other.name();
-        (flux != other).then(|| format!("scheme.flux = \"{}\" damps compression less than \"{name}\"", flux.name()))
+        let (name, memory) = (other.name(), self.has_memory());
+        (flux != other && !memory)
+            .then(|| format!("scheme.flux = \"{}\" damps compression less than \"{name}\"", flux.name()))
     }
 
     fn law(&self) -> Option<String> {

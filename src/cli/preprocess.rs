@@ -110,10 +110,16 @@ fn classes<S, O>(pool: &Pool<S, O>) -> String {
     format!("{} shared by congruent cells, {} blocks with their own", pool.shared.len(), pool.own.len())
 }
 
-/// The initial state is healthy at the nodes, and not at the points that its polynomial is sampled at.
+/// The initial state is healthy at the nodes, and not at the points or faces that its polynomial is sampled at.
 fn sick(scene: &Scene, body: &Body, scheme: &Scheme, loss: &Loss) -> Error {
     let what = format!("the initial state is lost: {}", pipeline::describe(loss, scheme, &body.mesh));
-    scene.error("initial.deformation", what, "give a deformation that is smooth at the size of a cell, or a finer mesh")
+    match scene.initial.snapshot {
+        Some(_) => scene.error("initial.snapshot", what, "give the snapshot of an earlier step"),
+        None => {
+            let remedy = "give a deformation that is smooth at the size of a cell, or a finer mesh";
+            scene.error("initial.deformation", what, remedy)
+        }
+    }
 }
 
 struct Cost {
@@ -128,7 +134,7 @@ struct Cost {
 fn cost(scheme: &Scheme, state: &State, settings: Settings, h: f64) -> std::result::Result<Cost, Loss> {
     let mut work = Work::new(scheme, state);
     let mut survey = Survey::default();
-    scheme.survey(state, &work, &mut survey)?;
+    scheme.survey_all(state, &work, &mut survey)?;
     let dt = settings.courant * h / survey.fastest;
     let steps = ((settings.end - state.time) / dt).ceil();
     let mut trial = || {

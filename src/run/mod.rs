@@ -118,7 +118,7 @@ impl Run<'_, '_> {
         }
         let mut survey = Survey::default();
         let sick = |loss: Loss| Stop::from(Kept::new(state, &Survey::default()).lost(loss, state, 0.0));
-        self.scheme.survey(state, &work, &mut survey).map_err(sick)?;
+        self.scheme.survey_all(state, &work, &mut survey).map_err(sick)?;
         report.start(self.scheme, state, &survey, &work);
         let mut kept = Kept::new(state, &survey);
         let h = self.smallest_h();
@@ -148,7 +148,7 @@ impl Run<'_, '_> {
             report.count(self.scheme, dt, &survey, &mut work);
         }
         // No step looks at the faces of the last state.
-        if let Err(loss) = self.scheme.survey(state, &work, &mut next) {
+        if let Err(loss) = self.scheme.survey_all(state, &work, &mut next) {
             return Err(kept.lost(loss, state, 0.0).into());
         }
         report.see(&next);

@@ -1,6 +1,7 @@
 //! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
 
 use super::balance::{self, Sums};
+use super::health::FacePoint;
 use super::phase::Clock;
 use super::predictor::Predictor;
 use super::predictor::transfer::{FieldsToPoints, ToNodes};
@@ -155,11 +156,11 @@ impl Block<'_> {
             kernel.run(volume::Traces::<'_, M, false> { line, metric, arrays, width, traces });
         });
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
-        let mut j = F8::ZERO;
-        kernel.run(volume::Speeds { law, metric, width, shear, traces: self.traces, smallest_j: &mut j });
         // Later stages of RK are no states: what is wrong with them shows in the state that they make.
-        if self.stage.number == 0 {
-            self.worst.see_faces(&j, self.block, operators.blocks.count[self.block], self.traces, width);
+        let worst = (self.stage.number == 0).then_some((&mut *self.worst, operators.blocks.count[self.block]));
+        if kernel.run(volume::Speeds { law, metric, width, shear, traces: self.traces, worst }) {
+            let count = operators.blocks.count[self.block];
+            self.worst.lost_at(FacePoint::find(self.block, count, self.traces, width));
         }
         self.scratch.phases.book(Phase::Traces, &mut clock);
     }

@@ -5,15 +5,16 @@
 //! step), and at its face points. These are seen when the next step has made their traces: for RK they are those of the
 //! state, for ADER those of the averages over the step, which is what the law is asked for there. The determinant is at
 //! hand, since the wave speed of a trace needs it. A state from outside, and the last of a run, are looked at by
-//! [`Scheme::survey`] at all three kinds of places.
+//! [`Scheme::survey_all`] at all three kinds of places.
 
-use super::survey::{Loss, LossKind};
-use super::{Method, Scheme};
-use crate::lane::{F8, LANES, Lanes};
+use super::survey::{Loss, LossKind, Survey};
+use super::{Method, Scheme, Work};
+use crate::lane::{F8, Lanes};
 use crate::mesh::map;
 use crate::operators::{Matrix, PointMatrices, Share};
 use crate::state::State;
 use crate::tensor;
+use rayon::prelude::*;
 
 /// A place in a cell where F is looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,7 +47,7 @@ pub(super) struct FacePoint {
     /// The face and the point on it.
     at: [usize; 2],
     /// Its J.
-    pub j: f64,
+    j: f64,
 }
 
 impl FacePoint {
@@ -134,8 +135,27 @@ impl Scheme {
         }
     }
 
+    /// [`Scheme::survey`], and the health at face points: of a state that no step has made, or that none will look at.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn survey_all(&self, state: &State, memory: &Work, out: &mut Survey) -> Result<(), Loss> {
+        self.survey(state, memory, out)?;
+        let blocks = (0..self.operators.blocks.len()).into_par_iter();
+        let faces = blocks.map(|block| self.smallest_j_at_faces(state, block));
+        let worst = faces.reduce_with(|a, b| if b.j < a.j || (b.j == a.j && b.block < a.block) { b } else { a });
+        match worst {
+            Some(face) if face.j <= 0.0 => Err(self.loss_at_face(&face)),
+            Some(face) => {
+                out.min_j = out.min_j.min(face.j);
+                Ok(())
+            }
+            None => Ok(()),
+        }
+    }
+
     /// The smallest J at the face points of the real cells of a block.
-    pub(super) fn smallest_j_at_faces(&self, state: &State, block: usize) -> FacePoint {
+    fn smallest_j_at_faces(&self, state: &State, block: usize) -> FacePoint {
         let lanes = 0..self.operators.blocks.count[block];
         let none = FacePoint { block, lane: 0, at: [0; 2], j: f64::INFINITY };
         lanes.map(|lane| self.faces_of_lane(state, block, lane)).fold(none, |a, b| if b.j < a.j { b } else { a })
@@ -239,14 +259,5 @@ impl Scheme {
     }
 }
 
-/// The smallest J of the real cells of a block, and whether it is not above 0.
-#[inline(always)]
-pub(super) fn smallest_of(j: &F8, cells: usize) -> (F8, bool) {
-    let mut out = *j;
-    out.0[cells.min(LANES)..].fill(f64::INFINITY);
-    let mut sick = false;
-    for j in out.0 {
-        sick |= j <= 0.0;
-    }
-    (out, sick)
-}
+#[cfg(test)]
+mod tests;

@@ -92,25 +92,26 @@ impl Worst {
         }
     }
 
-    /// With the smallest J at the face points of the real cells of a block.
-    fn see_face(mut self, face: FacePoint) -> Self {
-        self.min_j.0[0] = self.min_j.0[0].min(face.j);
-        if face.j <= 0.0 {
-            self.face = FacePoint::first(self.face, Some(face));
+    /// With the smallest J at the face points of a block with so many real cells; whether one is not above 0.
+    #[inline(always)]
+    pub fn see_faces<L: Lanes>(&mut self, smallest: L, cells: usize) -> bool {
+        let (mut j, mut sick, mut bits) = (F8::ZERO, F8::ZERO, 0);
+        smallest.store(&mut j);
+        for lane in cells..LANES {
+            j.0[lane] = f64::INFINITY;
         }
-        self
+        L::load(&self.min_j).min(L::load(&j)).store(&mut self.min_j);
+        L::load(&j).where_positive(L::zero(), L::splat(1.0)).store(&mut sick);
+        for sick in &sick.0 {
+            bits |= sick.to_bits();
+        }
+        bits != 0
     }
 
-    /// With the smallest J at the face points of a block with so many real cells, whose traces these are.
-    #[inline(always)]
-    pub fn see_faces(&mut self, j: &F8, block: usize, cells: usize, traces: &[F8], width: usize) {
-        let (j, sick) = health::smallest_of(j, cells);
-        for lane in 0..LANES {
-            self.min_j.0[lane] = self.min_j.0[lane].min(j.0[lane]);
-        }
-        if sick {
-            self.face = FacePoint::first(self.face, Some(FacePoint::find(block, cells, traces, width)));
-        }
+    /// With a face point where J <= 0.
+    #[cold]
+    pub fn lost_at(&mut self, face: FacePoint) {
+        self.face = FacePoint::first(self.face, Some(face));
     }
 
     /// That of both.
@@ -126,7 +127,7 @@ impl Worst {
 }
 
 impl Scheme {
-    /// Surveys `state` into `out`: wave speeds at its points, and its health at points, grid nodes and face points.
+    /// Surveys `state` into `out`: wave speeds at its points, and its health at points and grid nodes.
     ///
     /// # Errors
     /// The first cell (in the order of the blocks) that lost stability.
@@ -140,7 +141,7 @@ impl Scheme {
                 let internal = self.histories.of(&state.internal, block);
                 let (mut worst, history) = (Worst::NONE, History::Now(internal));
                 self.kernel.run(Examine { scheme: self, block, u, history, scratch, speed, worst: &mut worst });
-                worst.see_face(self.smallest_j_at_faces(state, block))
+                worst
             })
         });
         self.judge(worst.reduce(|| Worst::NONE, Worst::and), state, out)
