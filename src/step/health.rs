@@ -37,7 +37,7 @@ impl std::fmt::Display for Site {
     }
 }
 
-/// A face point with J <= 0 in a block.
+/// A face point in a block whose J is not above 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FacePoint {
     /// The block.
@@ -64,7 +64,7 @@ impl FacePoint {
         }
     }
 
-    /// The point with the smallest J of the first `count` lanes of a block, from its traces, [face][point][`width`].
+    /// The point with a J that is not a number, else with the smallest, of the first `count` lanes of a block, from its traces, [face][point][`width`].
     #[cold]
     pub fn find(block: usize, count: usize, traces: &[F8], width: usize) -> Self {
         let m = traces.len() / width / 4;
@@ -72,7 +72,7 @@ impl FacePoint {
         for (number, trace) in traces.chunks_exact(width).enumerate() {
             for lane in 0..count {
                 let j = tensor::det([0, 1, 2, 3].map(|k| trace[k].0[lane]));
-                if j < worst.j {
+                if j < worst.j || (j.is_nan() && !worst.j.is_nan()) {
                     worst = Self { block, lane, at: [number / m, number % m], j };
                 }
             }
@@ -81,14 +81,14 @@ impl FacePoint {
     }
 }
 
-/// Smallest J of nodes, F being `[component][node]`; infinite for none.
+/// Smallest J of M x M nodes, F being `[component][node]`.
 #[inline(always)]
-pub(super) fn smallest_j<L: Lanes>(f: &[F8]) -> L {
+pub(super) fn smallest_j<L: Lanes, const M: usize>(f: &[F8]) -> L {
+    let n = M * M;
+    let f = &f[..4 * n];
     let mut smallest = L::splat(f64::INFINITY);
-    let (one, two) = f.split_at(f.len() / 2);
-    let ((f11, f12), (f21, f22)) = (one.split_at(f.len() / 4), two.split_at(f.len() / 4));
-    for (((f11, f12), f21), f22) in f11.iter().zip(f12).zip(f21).zip(f22) {
-        let f = [L::load(f11), L::load(f12), L::load(f21), L::load(f22)];
+    for a in 0..n {
+        let f = [L::load(&f[a]), L::load(&f[n + a]), L::load(&f[2 * n + a]), L::load(&f[3 * n + a])];
         smallest = smallest.min(tensor::det(f));
     }
     smallest
@@ -186,7 +186,8 @@ impl Scheme {
     /// The loss at a face point.
     pub(super) fn loss_at_face(&self, face: &FacePoint) -> Loss {
         let cell = self.operators.blocks.cells[face.block][face.lane];
-        Loss { cell, site: face.site(), kind: LossKind::Inverted(face.j) }
+        let kind = if face.j.is_finite() { LossKind::Inverted(face.j) } else { LossKind::NotFinite };
+        Loss { cell, site: face.site(), kind }
     }
 
     /// The worst place in a block that is known to be sick: a number that is not finite, else the smallest J where it is not

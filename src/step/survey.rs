@@ -3,7 +3,7 @@
 use super::health::{self, FacePoint, Site};
 use super::history::{recall, remember};
 use super::predictor::{self, transfer::FieldsToPoints};
-use super::volume;
+use super::volume::{self, with_nodes};
 use super::{Phase, Scheme, Scratch, Work as Memory, with_scratch};
 use crate::lane::{self, Coefficient, F8, LANES, Lane, Lanes, Twin, Work};
 use crate::material::Material;
@@ -211,7 +211,10 @@ impl Work for Examine<'_> {
         let mut clock = scratch.phases.clock();
         let law = &scheme.laws[scheme.operators.blocks.material[block]];
         let (f, others) = u.split_at(4 * scheme.operators.nodes());
-        let nodes = if scheme.samples_at_nodes(block) { &[] } else { f };
+        let at_nodes = match scheme.samples_at_nodes(block) {
+            true => L::splat(f64::INFINITY),
+            false => with_nodes!(scheme.operators.line.m, M => health::smallest_j::<L, M>(f)),
+        };
         let points = at_points::<L>(scheme, u, block, &mut scratch.nodes, &mut scratch.points);
         let found = with_law!(law, law => {
             let internal = match history {
@@ -221,7 +224,7 @@ impl Work for Examine<'_> {
                     after
                 }
             };
-            examine::<L, _>(law, &points, internal, nodes, others)
+            examine::<L, _>(law, &points, internal, at_nodes, others)
         });
         *speed = found.speed;
         worst.see::<L>(found, block, scheme.operators.blocks.count[block]);
@@ -312,9 +315,9 @@ impl<L: Lane> Extremes<L> {
     }
 }
 
-/// Looks at F at the points, at J at the nodes and at what else must be finite.
+/// Looks at F at the points and at what else must be finite; `at_nodes` is the smallest J there.
 #[inline(always)]
-fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8], nodes: &[F8], others: &[F8]) -> Found {
+fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8], at_nodes: L, others: &[F8]) -> Found {
     // A copy: its constants stay in registers.
     let law = *law;
     // Two points at a time, where none brings numbers of its own.
@@ -340,7 +343,7 @@ fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8], no
     }
     let fastest = twins.fastest.0.max(twins.fastest.1).max(seen.fastest);
     let slowest = twins.slowest.0.min(twins.slowest.1).min(seen.slowest);
-    let min_j = twins.min_j.0.min(twins.min_j.1).min(seen.min_j).min(health::smallest_j::<L>(nodes));
+    let min_j = twins.min_j.0.min(twins.min_j.1).min(seen.min_j).min(at_nodes);
     let mut found = Found { speed: F8::ZERO, min_j: F8::ZERO, sick: F8::ZERO };
     fastest.sqrt().store(&mut found.speed);
     min_j.store(&mut found.min_j);
