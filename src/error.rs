@@ -54,13 +54,13 @@ pub enum Error {
     /// The run lost stability (exit code 3): NaN, J <= 0 or loss of hyperbolicity.
     #[error("step {step}, t = {time:.9e} s: {what}\n  {remedy}")]
     Unstable {
-        /// What was lost, with cell and point numbers and reference coordinates.
+        /// What was lost, in which cell, at which point, node or face point, and its reference coordinates.
         what: String,
         /// Time at the start of the step that failed, in s.
         time: f64,
         /// Number of the step that failed.
         step: usize,
-        /// Where the last good state lies, and what may help.
+        /// Where a good state lies that the run can go on from, and what may help.
         remedy: String,
     },
     /// The run was interrupted and its state saved (exit code 4).

@@ -3,6 +3,7 @@
 mod bench;
 mod certificates;
 mod export;
+mod lost;
 mod mesh;
 mod notices;
 mod pipeline;

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::io::cloud_file::{self, More};
 use crate::io::{mesh_file, operators_file};
 use crate::lane::Kernel;
-use crate::mesh::{Mesh, map};
+use crate::mesh::Mesh;
 use crate::observe::{Solution, export};
 use crate::operators::carry::Deficient;
 use crate::operators::certificate::{Certificate, Class, certify};
@@ -130,18 +130,10 @@ pub fn operators(scene: &Scene, body: &Body, store: &Store) -> Result<(Operators
     Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), notes.join("; ")))
 }
 
-/// A loss of stability in words: what, cell, point and its reference coordinates.
+/// A loss of stability in words: what, where in which cell, and its reference coordinates.
 pub fn describe(loss: &Loss, scheme: &Scheme, mesh: &Mesh) -> String {
-    let xi = match &scheme.operators.points {
-        Some(points) => {
-            let (block, lane) = scheme.operators.blocks.slot[loss.cell];
-            [0, 1].map(|k| points.parent[2 * (points.first[block] + loss.point) + k].0[lane])
-        }
-        None => scheme.operators.line.basis.node_2d(loss.point),
-    };
-    let x = map::position(&mesh.corners(loss.cell), xi);
-    let cell = mesh.number(loss.cell);
-    format!("{} in cell {cell}, point {}, at X = ({:.6}, {:.6})", loss.kind, loss.point, x[0], x[1])
+    let [x, y] = scheme.position_of(loss.cell, loss.site);
+    format!("{} in cell {}, at {}, X = ({x:.6}, {y:.6})", loss.kind, mesh.number(loss.cell), loss.site)
 }
 
 /// The scheme on the widest instruction set.

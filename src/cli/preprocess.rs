@@ -8,7 +8,7 @@ use crate::io::operators_file;
 use crate::lane::Kernel;
 use crate::mesh::Mesh;
 use crate::operators::{Certificate, Pool};
-use crate::run::Settings;
+use crate::run::{Kept, Settings};
 use crate::scene::Scene;
 use crate::state::State;
 use crate::step::{Loss, Scheme, Survey, Work, cfl};
@@ -67,7 +67,8 @@ pub fn report(
     for (certificate, &(block, lane)) in certificates.iter_mut().zip(&operators.blocks.slot) {
         certificate.dt = settings.courant * certificate.h / cost.survey.speed[block].fastest.0[lane];
     }
-    let memory = operators.bytes() + cost.work + size_of_val(&state.u[..]);
+    let states = size_of_val(&state.u[..]) + size_of_val(&state.internal[..]) + Kept::bytes(state);
+    let memory = operators.bytes() + cost.work + states;
     let mut rows = vec![
         row("method", format!("{} S{}T{}", scene.scheme.method.name(), scene.scheme.degree, scene.scheme.time_degree)),
         row(
@@ -111,10 +112,16 @@ fn classes<S, O>(pool: &Pool<S, O>) -> String {
     format!("{} shared by congruent cells, {} blocks with their own", pool.shared.len(), pool.own.len())
 }
 
-/// The initial state is healthy at the nodes, and not at the points that its polynomial is sampled at.
+/// The initial state is healthy at the nodes, and not at the points or faces that its polynomial is sampled at.
 fn sick(scene: &Scene, body: &Body, scheme: &Scheme, loss: &Loss) -> Error {
     let what = format!("the initial state is lost: {}", pipeline::describe(loss, scheme, &body.mesh));
-    scene.error("initial.deformation", what, "give a deformation that is smooth at the size of a cell, or a finer mesh")
+    match scene.initial.snapshot {
+        Some(_) => scene.error("initial.snapshot", what, "give the snapshot of an earlier step"),
+        None => {
+            let remedy = "give a deformation that is smooth at the size of a cell, or a finer mesh";
+            scene.error("initial.deformation", what, remedy)
+        }
+    }
 }
 
 struct Cost {
@@ -129,7 +136,7 @@ struct Cost {
 fn cost(scheme: &Scheme, state: &State, settings: Settings, h: f64) -> std::result::Result<Cost, Loss> {
     let mut work = Work::new(scheme, state);
     let mut survey = Survey::default();
-    scheme.survey(state, &work, &mut survey)?;
+    scheme.survey_all(state, &work, &mut survey)?;
     let dt = settings.courant * h / survey.fastest;
     let steps = ((settings.end - state.time) / dt).ceil();
     let mut trial = || {

@@ -1,5 +1,6 @@
 //! `dgmpm solve`: steps the conservation laws.
 
+use super::lost::{self, Case};
 use super::pipeline::{self, Files, Store};
 use super::print::{say, warn};
 use super::progress::{Progress, energy_made};
@@ -13,7 +14,8 @@ use crate::observe;
 use crate::run::{End, Folder, Report, Run, Settings, Stop};
 use crate::scene::Scene;
 use crate::state::State;
-use crate::step::{EnergyMade, Loss};
+use crate::step::EnergyMade;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -89,22 +91,22 @@ impl Solve<'_> {
             }
         });
         let mut report = Report::default();
-        let (status, result) = match self.advance(&mut built, &mut state, &mut report) {
-            Ok(()) => ("done", Ok(())),
-            Err(stop) => self.stopped(stop, &built, &state),
+        let ended = match self.advance(&mut built, &mut state, &mut report) {
+            Ok(()) => Ended { status: "done", loss: None, result: Ok(()) },
+            Err(stop) => self.stopped(stop, &built, &state, &report),
         };
         report.finish(&built.scheme, &state);
         let outcome = Outcome::new(self.scene, &built.body, &built.scheme, &state, &report);
         outcome.print();
-        if let (true, Ok(())) = (report.watch.warned(), &result) {
+        if let (true, Ok(())) = (report.watch.warned(), &ended.result) {
             warn(format!(
                 "{}: do not trust these results; `energy_made` in summary.json",
                 energy_made(&report.watch.made)
             ));
         }
-        let written = outcome.write(self.folder, status);
+        let written = outcome.write(self.folder, ended.status, ended.loss);
         say(format!("results in {}", self.folder.root.display()));
-        result.and(written)
+        ended.result.and(written)
     }
 
     /// Steps to the end, from grid to grid.
@@ -130,25 +132,35 @@ impl Solve<'_> {
         }
     }
 
-    /// Keeps the last good state and says why the run ended.
-    fn stopped(&self, stop: Stop, built: &Built, state: &State) -> (&'static str, Result<()>) {
+    /// Keeps a good state and says why the run ended.
+    fn stopped(&self, stop: Stop, built: &Built, state: &State, report: &Report) -> Ended {
+        // That before a step which lost stability is nearly lost itself.
+        let good = match &stop {
+            Stop::Unstable(lost) => &lost.kept,
+            Stop::EnergyMade(made) => &made.1,
+            _ => state,
+        };
         let kept = built
             .keep_files(self.folder)
-            .and_then(|()| observe::write(&built.scheme, state, &built.files, &self.folder.snapshots()));
-        if let Stop::Output(error) = stop {
-            return ("failed", Err(error));
-        }
-        let place = match &kept {
-            Ok(path) => format!("the last good state is in {}", path.display()),
-            Err(why) => format!("the last good state could not be kept: {why}"),
-        };
+            .and_then(|()| observe::write(&built.scheme, good, &built.files, &self.folder.snapshots()));
+        let ended = |status, error| Ended { status, loss: None, result: Err(error) };
         match stop {
-            Stop::Unstable(loss) => ("unstable", Err(unstable(&loss, built, state, &place))),
-            Stop::EnergyMade(made) => ("unstable", Err(too_much(&made, &kept))),
-            _ => (
-                "interrupted",
-                Err(Error::Interrupted(format!("at step {}, t = {:.6e} s; {place}", state.step, state.time))),
-            ),
+            Stop::Output(error) => ended("failed", error),
+            Stop::Interrupted => {
+                let place = match &kept {
+                    Ok(path) => format!("the last good state is in {}", path.display()),
+                    Err(why) => format!("the last good state could not be kept: {why}"),
+                };
+                let at = format!("at step {}, t = {:.6e} s; {place}", state.step, state.time);
+                ended("interrupted", Error::Interrupted(at))
+            }
+            Stop::EnergyMade(made) => ended("unstable", too_much(&made.0, &kept)),
+            Stop::Unstable(lost) => {
+                let case = Case { scene: self.scene, built, state, report, lost: &lost };
+                let (loss, error) = (Some(case.json()), case.error(&lost::kept(&lost, &kept)));
+                let status = if let Error::Unstable { .. } = error { "unstable" } else { "failed" };
+                Ended { status, loss, result: Err(error) }
+            }
         }
     }
 }
@@ -156,8 +168,8 @@ impl Solve<'_> {
 /// The error of a run that made so much energy that it was stopped.
 fn too_much(made: &EnergyMade, kept: &Result<PathBuf>) -> Error {
     let place = match kept {
-        Ok(path) => format!("its state is in {}, the last good one is earlier", path.display()),
-        Err(why) => format!("its state could not be kept: {why}"),
+        Ok(path) => format!("a state of some steps before is in {}", path.display()),
+        Err(why) => format!("the state of some steps before could not be kept: {why}"),
     };
     Error::Unstable {
         what: format!("the body has energy that nothing gave to it: {}", energy_made(made)),
@@ -171,11 +183,11 @@ fn too_much(made: &EnergyMade, kept: &Result<PathBuf>) -> Error {
     }
 }
 
-fn unstable(loss: &Loss, built: &Built, state: &State, place: &str) -> Error {
-    Error::Unstable {
-        what: pipeline::describe(loss, &built.scheme, &built.body.mesh),
-        time: state.time,
-        step: state.step + 1,
-        remedy: format!("{place}; a smaller scheme.safety, a finer mesh, or [curl] control = \"lcf\" may help"),
-    }
+/// How a run ended.
+struct Ended {
+    /// For `summary.json`.
+    status: &'static str,
+    /// What is known of a loss of stability, for `summary.json`.
+    loss: Option<Value>,
+    result: Result<()>,
 }

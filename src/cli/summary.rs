@@ -34,8 +34,8 @@ impl<'a> Outcome<'a> {
         Self { scene, body, scheme, state, report, errors: scene.build_exact().map(of) }
     }
 
-    /// Writes `summary.json`. `status`: done, unstable, interrupted or failed.
-    pub fn write(&self, folder: &Folder, status: &str) -> Result<()> {
+    /// Writes `summary.json`. `status`: done, unstable, interrupted or failed; `loss`: what is known of a loss of stability.
+    pub fn write(&self, folder: &Folder, status: &str, loss: Option<Value>) -> Result<()> {
         let Self { scene, body, scheme, state, .. } = self;
         let mut all = self.report.json(scheme, state);
         if let Some(errors) = &self.errors {
@@ -49,6 +49,9 @@ impl<'a> Outcome<'a> {
         all.insert("norms".to_owned(), json!(norms(scheme, state, &body.material)));
         all.insert("kernel".to_owned(), json!(format!("{:?}", scheme.kernel).to_lowercase()));
         all.insert("status".to_owned(), json!(status));
+        if let Some(loss) = loss {
+            all.insert("loss".to_owned(), loss);
+        }
         let text = format!("{:#}\n", Value::Object(all));
         crate::io::pending::write_text(&folder.summary(), &text)
     }

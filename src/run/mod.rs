@@ -1,11 +1,13 @@
 //! The time loop.
 
 mod folder;
+mod kept;
 mod norms;
 mod report;
 mod watch;
 
 pub use folder::Folder;
+pub use kept::{Kept, Lost};
 pub use norms::norms;
 pub use report::{Report, dofs, peak_memory_mib};
 pub use watch::{Limits, Watch};
@@ -29,13 +31,13 @@ pub struct Settings {
     pub watch: Option<Limits>,
 }
 
-/// Why a run stopped before its end; the state is then the last good one.
+/// Why a run stopped before its end; the state is then the one before the step that failed.
 #[derive(Debug)]
 pub enum Stop {
     /// A step lost stability.
-    Unstable(Loss),
-    /// The body has energy that nothing gave to it.
-    EnergyMade(EnergyMade),
+    Unstable(Box<Lost>),
+    /// The body has energy that nothing gave to it; with a state of some steps before.
+    EnergyMade(Box<(EnergyMade, State)>),
     /// The user asked for it.
     Interrupted,
     /// An output could not be written.
@@ -45,6 +47,12 @@ pub enum Stop {
 impl From<Error> for Stop {
     fn from(error: Error) -> Self {
         Stop::Output(error)
+    }
+}
+
+impl From<Lost> for Stop {
+    fn from(lost: Lost) -> Self {
+        Stop::Unstable(Box::new(lost))
     }
 }
 
@@ -93,7 +101,7 @@ pub enum End {
 }
 
 impl Run<'_, '_> {
-    /// Steps `state` to the end; it stays at the last good state where the run stops before.
+    /// Steps `state` to the end; where the run stops before, it stays at the state before the step that failed.
     ///
     /// # Errors
     /// See [`Stop`].
@@ -116,8 +124,10 @@ impl Run<'_, '_> {
             work = work.with_balance(self.scheme);
         }
         let mut survey = Survey::default();
-        self.scheme.survey(state, &work, &mut survey).map_err(Stop::Unstable)?;
+        let sick = |loss: Loss| Stop::from(Kept::new(state, &Survey::default()).lost(loss, state, 0.0));
+        self.scheme.survey_all(state, &work, &mut survey).map_err(sick)?;
         report.start(self.scheme, (state, &survey), &work, self.settings.watch);
+        let mut kept = Kept::new(state, &survey);
         let h = self.smallest_h();
         let mut next = survey.clone();
         while state.time < self.settings.end {
@@ -136,15 +146,23 @@ impl Run<'_, '_> {
             if (stop - work.next.time).abs() < 1e-9 * dt {
                 work.next.time = stop;
             }
-            self.scheme.surveyed(&mut work, &mut next).map_err(Stop::Unstable)?;
+            if let Err(loss) = self.scheme.surveyed(&mut work, &mut next) {
+                return Err(kept.lost(loss, state, dt).into());
+            }
             std::mem::swap(state, &mut work.next);
             std::mem::swap(&mut survey, &mut next);
+            kept.look(&mut work.next, &next);
             match report.count(self.scheme, dt, (state, &survey), &mut work) {
-                Some(Alarm::Stop(made)) => return Err(Stop::EnergyMade(made)),
+                Some(Alarm::Stop(made)) => return Err(Stop::EnergyMade(Box::new((made, kept.earlier())))),
                 Some(Alarm::Warning(made)) => self.observers.iter_mut().for_each(|o| o.energy_made(&made)),
                 None => {}
             }
         }
+        // No step looks at the faces of the last state.
+        if let Err(loss) = self.scheme.survey_all(state, &work, &mut next) {
+            return Err(kept.lost(loss, state, 0.0).into());
+        }
+        report.see(&next);
         self.observe(state, &survey, report.balance.as_ref(), 0.0)?;
         Ok(End::Done)
     }

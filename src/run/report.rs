@@ -1,5 +1,6 @@
 //! What a run cost and what became of energy and momentum: the table at its end and `summary.json`.
 
+use super::Kept;
 use super::watch::{Alarm, Limits, Watch};
 use crate::state::{State, UNKNOWNS};
 use crate::step::phase::{NAMES, Phases};
@@ -25,7 +26,7 @@ pub struct Report {
     pub balance: Option<Balance>,
     /// The work done on the body, and the energy that was made out of nothing.
     pub watch: Watch,
-    /// The smallest J seen anywhere, at all places where it is tested, from the start to the end.
+    /// The smallest J that was seen in a state of the run, at its points, grid nodes and face points.
     pub min_j: f64,
     /// Bytes of operators, state and work.
     pub bytes: usize,
@@ -66,18 +67,18 @@ impl Report {
         work: &Work,
         limits: Option<Limits>,
     ) {
+        self.see(survey);
         // After a pause the clocks and the balance go on.
         if self.first.is_none() {
             self.clock = (Instant::now(), ProcessTime::now());
             let first = scheme.totals(state);
             self.balance = work.has_balance().then(|| Balance::starting_at(first.accounted()));
             self.watch = Watch::new(scheme, &first, limits);
-            self.min_j = first.min_j;
+            self.min_j = self.min_j.min(first.min_j);
             self.first = Some(first);
         }
-        self.min_j = self.min_j.min(survey.min_j);
-        let state = size_of_val(&state.u[..]) + size_of_val(&state.internal[..]);
-        self.bytes = self.bytes.max(scheme.operators.bytes() + work.bytes() + state);
+        let (start, state) = (state, size_of_val(&state.u[..]) + size_of_val(&state.internal[..]));
+        self.bytes = self.bytes.max(scheme.operators.bytes() + work.bytes() + state + Kept::bytes(start));
     }
 
     /// Counts a step of `dt` that led to `state`; what the watch over the energy says of it.
@@ -91,12 +92,17 @@ impl Report {
         self.steps += 1;
         self.updates += (dofs(scheme) * scheme.stages()) as f64;
         self.dt = [self.dt[0].min(dt), self.dt[1].max(dt)];
-        self.min_j = self.min_j.min(survey.min_j);
+        self.see(survey);
         self.phases.add(&work.take_phases());
         if let Some(balance) = &mut self.balance {
             work.settle(scheme, balance);
         }
         self.watch.step(scheme, state, work, self.balance.as_ref())
+    }
+
+    /// Counts what a survey has seen.
+    pub(super) fn see(&mut self, survey: &Survey) {
+        self.min_j = self.min_j.min(survey.min_j);
     }
 
     /// What a regrid took of the energy, J/m.

@@ -202,7 +202,10 @@ impl Scene {
                 let x = mesh::map::position(&mesh.corners(cell), basis.node_2d(a));
                 let (f, v) = match &exact {
                     Some(exact) => (exact.deformation(x, self.start), exact.velocity(x, self.start)),
-                    None => self.initial.at(x),
+                    None => {
+                        self.check_initial_expressions(x, mesh.number(cell))?;
+                        self.initial.at(x)
+                    }
                 };
                 self.check_initial(f, v, x, mesh.number(cell))?;
                 let u = [f[0], f[1], f[2], f[3], density * v[0], density * v[1]];
@@ -214,9 +217,29 @@ impl Scene {
         Ok(state)
     }
 
+    /// Whether the expressions of the initial fields are finite at X.
+    fn check_initial_expressions(&self, x: [f64; 2], cell: u64) -> Result<()> {
+        let velocity = ["v1", "v2"].iter().zip(&self.initial.velocity);
+        let deformation = ["F11", "F12", "F21", "F22"].iter().zip(&self.initial.deformation);
+        let keyed = velocity.enumerate().map(|entry| ("velocity", entry));
+        for (key, (k, (name, expression))) in keyed.chain(deformation.enumerate().map(|entry| ("deformation", entry))) {
+            let value = expression.eval(x, 0.0);
+            if !value.is_finite() {
+                let source = expression.source();
+                let what = format!(
+                    "the initial {key} {name} = `{source}` is {value} at X = ({}, {}) in cell {cell}",
+                    x[0], x[1]
+                );
+                let remedy = "give an expression that is finite all over the body";
+                return Err(self.error(&format!("initial.{key}.{k}"), what, remedy));
+            }
+        }
+        Ok(())
+    }
+
     pub(super) fn check_initial(&self, f: [f64; 4], v: [f64; 2], x: [f64; 2], cell: u64) -> Result<()> {
         // Called for every node: no text is made before there is an error.
-        let at = || format!("at ({}, {}) in cell {cell}", x[0], x[1]);
+        let at = || format!("at X = ({}, {}) in cell {cell}", x[0], x[1]);
         if v.iter().any(|v| !v.is_finite()) {
             let what = format!("the initial velocity {} is ({}, {})", at(), v[0], v[1]);
             return Err(self.error("initial.velocity", what, "give expressions that are finite all over the body"));

@@ -6,6 +6,7 @@
 
 pub mod build;
 mod cloud;
+mod culprit;
 mod exact;
 mod expression;
 pub mod grids;
@@ -37,6 +38,7 @@ use crate::operators::Limits;
 pub use crate::riemann::Flux;
 use crate::run::Limits as WatchLimits;
 pub use cloud::{Given, Sampled, read_points};
+pub use culprit::Culprit;
 pub use exact::{Exact, SOLUTIONS};
 pub use expression::{Expression, FUNCTIONS, Fault};
 pub use laws::{LAWS, Law, Parameter};

@@ -1,12 +1,14 @@
 //! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
 
 use super::balance::Sums;
+use super::health::FacePoint;
 use super::outside::{Given, SourceStage};
 use super::phase::Clock;
 use super::predictor::Predictor;
 use super::predictor::transfer::{FieldsToPoints, ToNodes};
 use super::stage::AtNodes;
 use super::sums::Terms;
+use super::survey::Worst;
 use super::volume::{self, with_nodes};
 use super::{Method, Phase, Scheme, Scratch, Stage};
 use crate::lane::{Coefficient, F8, LANES, Lanes, Work, prefetch};
@@ -38,6 +40,8 @@ pub(super) struct Block<'a> {
     pub given: Option<&'a mut Given>,
     /// Its balance of energy (begun here at the first stage); none where it is off.
     pub sums: Option<&'a mut Sums>,
+    /// The worst of the blocks so far.
+    pub worst: &'a mut Worst,
     /// The thread's arrays.
     pub scratch: &'a mut Scratch,
 }
@@ -156,7 +160,12 @@ impl Block<'_> {
             kernel.run(volume::Traces::<'_, M, false> { line, metric, arrays, width, traces });
         });
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
-        kernel.run(volume::Speeds { law, metric, width, shear, traces: self.traces });
+        // Later stages of RK are no states: what is wrong with them shows in the state that they make.
+        let worst = (self.stage.number == 0).then_some((&mut *self.worst, operators.blocks.count[self.block]));
+        if kernel.run(volume::Speeds { law, metric, width, shear, traces: self.traces, worst }) {
+            let count = operators.blocks.count[self.block];
+            self.worst.lost_at(FacePoint::find(self.block, count, self.traces, width));
+        }
         self.scratch.phases.book(Phase::Traces, &mut clock);
     }
 

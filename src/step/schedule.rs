@@ -144,6 +144,7 @@ impl Pass<'_> {
             traces: &mut traces[1 + slot.index as usize * numbers..][..numbers],
             given: outside::entry(outside, out.first, out.given, block),
             sums: out.balance.as_mut().and_then(|sums| sums.get_mut(block - out.first)),
+            worst: &mut tile.worst,
             scratch,
         };
         work.run();

@@ -1,12 +1,13 @@
 //! The health of a state: current wave speeds (for dt and LCF), min J, and where stability was lost.
 
+use super::health::{self, FacePoint, Site};
 use super::history::{recall, remember};
 use super::predictor::{self, transfer::FieldsToPoints};
-use super::volume;
+use super::volume::{self, with_nodes};
 use super::{Phase, Scheme, Scratch, Work as Memory, with_scratch};
 use crate::lane::{self, Coefficient, F8, LANES, Lane, Lanes, Twin, Work};
 use crate::material::Material;
-use crate::operators::{Matrix, PointMatrices, Share};
+use crate::operators::{PointMatrices, Share};
 use crate::state::State;
 use crate::tensor;
 use crate::with_law;
@@ -19,7 +20,7 @@ pub struct Survey {
     pub speed: Vec<Speeds>,
     /// The largest of all, m/s.
     pub fastest: f64,
-    /// min J over all points.
+    /// The smallest J at all places where it is looked at: material points, grid nodes, face points, see [`health`].
     pub min_j: f64,
 }
 
@@ -38,8 +39,8 @@ pub struct Speeds {
 pub struct Loss {
     /// The cell (index in the mesh).
     pub cell: usize,
-    /// The point in the cell (the node for RK).
-    pub point: usize,
+    /// The place in the cell.
+    pub site: Site,
     /// What was lost.
     pub kind: LossKind,
 }
@@ -72,6 +73,8 @@ impl std::fmt::Display for LossKind {
 pub(super) struct Worst {
     /// The first block that lost stability; `usize::MAX` where all are healthy.
     sick: usize,
+    /// The first block that began the step with J <= 0 at a face.
+    face: Option<FacePoint>,
     /// Largest speed of the cells in each lane.
     fastest: F8,
     /// Smallest J of the cells in each lane.
@@ -80,7 +83,7 @@ pub(super) struct Worst {
 
 impl Worst {
     /// That of no block.
-    pub const NONE: Self = Self { sick: usize::MAX, fastest: F8::ZERO, min_j: F8::splat(f64::INFINITY) };
+    pub const NONE: Self = Self { sick: usize::MAX, face: None, fastest: F8::ZERO, min_j: F8::splat(f64::INFINITY) };
 
     /// With what was found in a block with so many real cells.
     #[inline(always)]
@@ -99,9 +102,32 @@ impl Worst {
         }
     }
 
+    /// With the smallest J at the face points of a block with so many real cells; whether one is not above 0.
+    #[inline(always)]
+    pub fn see_faces<L: Lanes>(&mut self, smallest: L, cells: usize) -> bool {
+        let (mut j, mut sick, mut bits) = (F8::ZERO, F8::ZERO, 0);
+        smallest.store(&mut j);
+        for lane in cells..LANES {
+            j.0[lane] = f64::INFINITY;
+        }
+        L::load(&self.min_j).min(L::load(&j)).store(&mut self.min_j);
+        L::load(&j).where_positive(L::zero(), L::splat(1.0)).store(&mut sick);
+        for sick in &sick.0 {
+            bits |= sick.to_bits();
+        }
+        bits != 0
+    }
+
+    /// With a face point where J <= 0.
+    #[cold]
+    pub fn lost_at(&mut self, face: FacePoint) {
+        self.face = FacePoint::first(self.face, Some(face));
+    }
+
     /// That of both.
     pub fn and(mut self, other: Self) -> Self {
         self.sick = self.sick.min(other.sick);
+        self.face = FacePoint::first(self.face, other.face);
         for lane in 0..LANES {
             self.fastest.0[lane] = self.fastest.0[lane].max(other.fastest.0[lane]);
             self.min_j.0[lane] = self.min_j.0[lane].min(other.min_j.0[lane]);
@@ -111,7 +137,7 @@ impl Worst {
 }
 
 impl Scheme {
-    /// Surveys `state` into `out`.
+    /// Surveys `state` into `out`: wave speeds at its points, and its health at points and grid nodes.
     ///
     /// # Errors
     /// The first cell (in the order of the blocks) that lost stability.
@@ -144,50 +170,12 @@ impl Scheme {
     fn judge(&self, worst: Worst, state: &State, out: &mut Survey) -> Result<(), Loss> {
         out.fastest = worst.fastest.0.iter().fold(0.0, |a, b| a.max(*b));
         out.min_j = worst.min_j.0.iter().fold(f64::INFINITY, |a, b| a.min(*b));
-        if worst.sick == usize::MAX { Ok(()) } else { Err(self.find_loss(state, worst.sick)) }
-    }
-
-    /// Names cell and point in a block that is known to be sick.
-    fn find_loss(&self, state: &State, block: usize) -> Loss {
-        let blocks = &self.operators.blocks;
-        let n = self.operators.nodes();
-        let stride = state.components * n;
-        let u = &state.u[block * stride..(block + 1) * stride];
-        let law = &self.laws[blocks.material[block]];
-        let mut first = None;
-        for lane in 0..blocks.count[block] {
-            let number = |k: usize, a: usize| u[k * n + a].0[lane];
-            let finite = (0..stride).all(|k| u[k].0[lane].is_finite());
-            let points = self.points_from_nodes(block, lane);
-            let count = points.as_ref().map_or(n, |m| m.rows);
-            for point in 0..count {
-                let at = |k: usize| match &points {
-                    None => number(k, point),
-                    Some(m) => m.row(point).iter().enumerate().map(|(a, w)| w * number(k, a)).sum(),
-                };
-                let f: [f64; 4] = std::array::from_fn(at);
-                let j = tensor::det(f);
-                let speeds = law.largest_speeds(f, &self.internal_at(state, block, lane, point));
-                let kind = match () {
-                    _ if !finite => LossKind::NotFinite,
-                    _ if j <= 0.0 => LossKind::Inverted(j),
-                    _ if speeds.iter().any(|c| c.is_nan()) => LossKind::NotHyperbolic,
-                    _ => continue,
-                };
-                first = first.or(Some(Loss { cell: blocks.cells[block][lane], point, kind }));
-            }
+        match (worst.face, worst.sick) {
+            // What the step began with comes before what it made of it.
+            (Some(face), _) => Err(self.loss_at_face(&face)),
+            (None, usize::MAX) => Ok(()),
+            (None, block) => Err(self.find_loss(state, block)),
         }
-        first.unwrap_or(Loss { cell: blocks.cells[block][0], point: 0, kind: LossKind::NotFinite })
-    }
-
-    /// Phi_a(xi_p) of one lane of a block; none for RK, where points are nodes.
-    fn points_from_nodes(&self, block: usize, lane: usize) -> Option<Matrix<f64>> {
-        let pool = &self.operators.points.as_ref()?.pool;
-        let one = match pool.share[block] {
-            Share::Shared(k) => pool.shared[k].to_dense(),
-            Share::Own(k) => pool.own[k].lane(lane).to_dense(),
-        };
-        if let PointMatrices::Dense { from_nodes, .. } = one { Some(from_nodes) } else { None }
     }
 }
 
@@ -232,7 +220,11 @@ impl Work for Examine<'_> {
         let Self { scheme, block, u, history, scratch, speed, worst } = self;
         let mut clock = scratch.phases.clock();
         let law = &scheme.laws[scheme.operators.blocks.material[block]];
-        let others = &u[4 * scheme.operators.nodes()..];
+        let (f, others) = u.split_at(4 * scheme.operators.nodes());
+        let at_nodes = match scheme.samples_at_nodes(block) {
+            true => L::splat(f64::INFINITY),
+            false => with_nodes!(scheme.operators.line.m, M => health::smallest_j::<L, M>(f)),
+        };
         let points = at_points::<L>(scheme, u, block, &mut scratch.nodes, &mut scratch.points);
         let found = with_law!(law, law => {
             let internal = match history {
@@ -245,7 +237,7 @@ impl Work for Examine<'_> {
             if scheme.curl.is_some() {
                 prestress::<L, _>(law, &points, internal).store(&mut speed.prestress);
             }
-            examine::<L, _>(law, &points, internal, others)
+            examine::<L, _>(law, &points, internal, at_nodes, others)
         });
         speed.fastest = found.speed;
         worst.see::<L>(found, block, scheme.operators.blocks.count[block]);
@@ -365,9 +357,9 @@ fn kirchhoff<L: Lane, M: Material>(law: &M, f: [L; 4], internal: &mut [L]) -> [L
     tensor::times_transposed(law.stress(f, &mut internal[..M::INTERNAL.len()]), f)
 }
 
-/// Looks at F at the points and at what else must be finite.
+/// Looks at F at the points and at what else must be finite; `at_nodes` is the smallest J there.
 #[inline(always)]
-fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8], others: &[F8]) -> Found {
+fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8], at_nodes: L, others: &[F8]) -> Found {
     // A copy: its constants stay in registers.
     let law = *law;
     // Two points at a time, where none brings numbers of its own.
@@ -393,7 +385,7 @@ fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8], ot
     }
     let fastest = twins.fastest.0.max(twins.fastest.1).max(seen.fastest);
     let slowest = twins.slowest.0.min(twins.slowest.1).min(seen.slowest);
-    let min_j = twins.min_j.0.min(twins.min_j.1).min(seen.min_j);
+    let min_j = twins.min_j.0.min(twins.min_j.1).min(seen.min_j).min(at_nodes);
     let mut found = Found { speed: F8::ZERO, min_j: F8::ZERO, sick: F8::ZERO };
     fastest.sqrt().store(&mut found.speed);
     min_j.store(&mut found.min_j);

@@ -384,7 +384,7 @@ fn a_state_that_lost_stability_is_named_by_cell_and_kind() {
         scheme.survey(&state, &Work::new(&scheme, &state), &mut Survey::default()).unwrap_err()
     };
     let inverted = sick([-0.5, 0.0, 0.0, 1.0, 0.0, 0.0]);
-    assert_eq!((inverted.cell, matches!(inverted.kind, survey::LossKind::Inverted(_))), (5, true));
+    assert_eq!((inverted.cell, matches!(inverted.kind, LossKind::Inverted(_))), (5, true));
     let nan = sick([1.0, 0.0, 0.0, 1.0, f64::NAN, 0.0]);
-    assert_eq!((nan.cell, nan.kind), (5, survey::LossKind::NotFinite));
+    assert_eq!((nan.cell, nan.kind), (5, LossKind::NotFinite));
 }

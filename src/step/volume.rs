@@ -3,7 +3,8 @@
 //! F rows in strong form (D v; `finish` adds the lifted jump of v), exact on uniform states; p rows in weak form. Both
 //! are exact integrals on bilinear cells, so the two forms agree there to rounding.
 
-use crate::lane::{F8, Lanes, Twin, Work, load_array, store_array, twins};
+use super::survey::Worst;
+use crate::lane::{F8, Lane, Lanes, Twin, Work, load_array, store_array, twins};
 use crate::material::{Law, Material};
 use crate::operators::{Line, Metric, determinant};
 use crate::riemann::tangent;
@@ -292,13 +293,17 @@ pub struct Speeds<'a> {
     pub shear: bool,
     /// [face][point][`width`]; F in, c out.
     pub traces: &'a mut [F8],
+    /// The worst of the blocks so far, which the smallest J of the traces goes to, and the number of real cells of this one;
+    /// none where nobody asks. (The determinant is that of the speed, found once.)
+    pub worst: Option<(&'a mut Worst, usize)>,
 }
 
 impl Work for Speeds<'_> {
-    type Out = ();
+    /// Whether a J is not above 0.
+    type Out = bool;
     #[inline(always)]
-    fn run<L: Lanes>(mut self) {
-        with_law!(self.law, law => {
+    fn run<L: Lanes>(mut self) -> bool {
+        let smallest = with_law!(self.law, law => {
             // A copy: what is stored below cannot change it, so its constants stay in registers.
             let law = *law;
             match (self.shear, self.width == width(self.shear, true)) {
@@ -308,6 +313,10 @@ impl Work for Speeds<'_> {
                 (true, true) => self.of_both::<L, _, { width(true, true) }>(law),
             }
         });
+        match self.worst {
+            Some((worst, cells)) => worst.see_faces::<L>(smallest, cells),
+            None => false,
+        }
     }
 }
 
@@ -320,26 +329,33 @@ impl Speeds<'_> {
     }
 
     #[inline(always)]
-    fn of_pressure<L: Lanes, M: Material, const W: usize>(&mut self, law: M) {
+    fn of_pressure<L: Lanes, M: Material, const W: usize>(&mut self, law: M) -> L {
         let (m, normals) = (self.traces.len() / W / 4, self.normals::<L>());
+        let mut smallest = Twin(L::splat(f64::INFINITY), L::splat(f64::INFINITY));
         for pair in 0..2 * m {
             let (a, b) = (2 * pair, 2 * pair + 1);
             let normals = twins(normals[a / m], normals[b / m]);
             let traces = &mut self.traces.as_chunks_mut::<W>().0[a..a + 2];
             let f = twins(load_array::<L, 4>(&traces[0][..4]), load_array::<L, 4>(&traces[1][..4]));
+            smallest = smallest.min(tensor::det(f));
             let Twin(one, two) = law.pressure_speed(f, normals);
             one.store(&mut traces[0][8]);
             two.store(&mut traces[1][8]);
         }
+        smallest.0.min(smallest.1)
     }
 
     #[inline(always)]
-    fn of_both<L: Lanes, M: Material, const W: usize>(&mut self, law: M) {
+    fn of_both<L: Lanes, M: Material, const W: usize>(&mut self, law: M) -> L {
         let (m, normals) = (self.traces.len() / W / 4, self.normals::<L>());
+        let mut smallest = L::splat(f64::INFINITY);
         for point in 0..4 * m {
             let normal = normals[point / m];
             let trace = &mut self.traces.as_chunks_mut::<W>().0[point];
-            store_array(law.speeds(load_array::<L, 4>(&trace[..4]), normal), &mut trace[8..10]);
+            let f = load_array::<L, 4>(&trace[..4]);
+            smallest = smallest.min(tensor::det(f));
+            store_array(law.speeds(f, normal), &mut trace[8..10]);
         }
+        smallest
     }
 }

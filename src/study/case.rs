@@ -257,8 +257,8 @@ pub(super) fn measure(
 /// Why a run lost stability, in a few words.
 pub fn why(stop: &Stop) -> String {
     match stop {
-        Stop::Unstable(loss) => loss.kind.to_string(),
-        Stop::EnergyMade(made) => format!("it made {:.0} % of its energy out of nothing", 100.0 * made.share),
+        Stop::Unstable(lost) => lost.loss.kind.to_string(),
+        Stop::EnergyMade(made) => format!("it made {:.0} % of its energy out of nothing", 100.0 * made.0.share),
         Stop::Interrupted | Stop::Output(_) => "it was stopped".to_owned(),
     }
 }

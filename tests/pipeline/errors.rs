@@ -14,7 +14,12 @@ fn bad_scenes_are_named_by_file_line_and_column() {
         ("degree = 1", "degree = 1\nsafety = 1.5", "27:10: the step is 1.50", "safety up to 1"),
         ("to = [1.0, 0.0]", "to = [1.5, 0.0]", "36:6: sample 4 of 5 of the line, at (1.125, 0)", "inside of the body"),
         ("from = [0.0, 0.0]", "from = [0.0, -0.1]", "35:8: sample 1 of 5", "inside of the body"),
-        ("\"-200\", \"0\"", "\"-200/x^20*0\", \"log(-1)\"", "11:12: the initial velocity", "finite"),
+        (
+            "\"-200\", \"0\"",
+            "\"-200/x^20*0\", \"log(-1)\"",
+            "11:28: the initial velocity v2 = `log(-1)` is NaN at X",
+            "finite",
+        ),
         ("velocity = [\"-200\", \"0\"]", "deformation = [\"x-0.5\", 0, 0, 1]", "11:15: the initial deformation", "> 0"),
         ("[mesh]", "[mesh", "2:6: this is not TOML", ""),
     ];
@@ -31,7 +36,8 @@ fn bad_scenes_are_named_by_file_line_and_column() {
 #[test]
 fn a_state_that_is_sick_only_between_its_nodes_is_bad_input_too() {
     let bench = Bench::new();
-    // J is .1 at the nodes of degree 2 (.113, .5, .887 of a cell of .25 m), below 0 at the points (.056) outside of them.
+    // J is .1 at the nodes of degree 2 (.113, .5, .887 of a cell of .25 m), below 0 at the points (.056) and faces outside of
+    // them.
     let deformation = "initial.deformation=[\"1 - 0.9*(4*x - floor(4*x) - 0.5)^2/0.15\", 0, 0, 1]";
     let message = String::from_utf8(
         bench
@@ -42,7 +48,10 @@ fn a_state_that_is_sick_only_between_its_nodes_is_bad_input_too() {
             .stderr,
     )
     .unwrap();
-    assert!(message.contains("the initial state is lost: J = ") && message.contains("in cell 1, point"), "{message}");
+    assert!(
+        message.contains("the initial state is lost: J = ") && message.contains("in cell 1, at face point"),
+        "{message}"
+    );
 }
 
 #[test]

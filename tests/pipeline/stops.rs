@@ -4,25 +4,25 @@ use crate::common::Bench;
 use std::time::{Duration, Instant};
 
 #[test]
-fn a_run_that_loses_stability_says_where_and_keeps_the_last_good_state() {
+fn a_run_that_loses_stability_says_where_and_keeps_a_good_state() {
     let bench = Bench::new();
     // The right end is pushed through the clamped left one, 1 m away, 2.5 m far by the end.
     let crush = "--set boundary.0.kind=clamped --set boundary.1.kind=velocity --set boundary.1.value=[\"-5e8*t\",0.0]";
     for method in ["ader-dgmpm", "rk-dgfem"] {
         let message = bench.fail(3, &format!("run case.toml --force {crush} --set scheme.method={method}"));
-        for words in ["step ", "t = ", "in cell ", "point ", "X = (", "the last good state is in runs/case/snapshots/"]
-        {
+        for words in ["step ", "t = ", "in cell ", " point ", "X = (", "steps before, is in runs/case/snapshots/"] {
             assert!(message.contains(words), "{words}: {message}");
         }
         let summary = bench.summary("runs/case");
         assert_eq!(summary["status"].as_str(), Some("unstable"));
-        let last = bench.last("runs/case");
+        let (last, loss) = (bench.last("runs/case"), &summary["loss"]);
         assert_eq!(
             (last.step as u64, Some(last.time)),
-            (summary["steps"].as_u64().unwrap(), summary["end_time"].as_f64())
+            (loss["kept_step"].as_u64().unwrap(), loss["kept_time"].as_f64())
         );
-        assert!(last.u.iter().all(|u| u.is_finite()) && last.time > 0.0 && last.time < 1e-4);
-        assert!(message.contains(&format!("error: step {}, ", last.step + 1)), "{message}");
+        let steps = summary["steps"].as_u64().unwrap();
+        assert!(last.u.iter().all(|u| u.is_finite()) && last.time < 1e-4 && (last.step as u64) < steps);
+        assert!(message.contains(&format!("error: step {}, ", steps + 1)), "{message}");
         bench.run("export runs/case");
     }
 }
