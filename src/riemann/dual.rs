@@ -32,13 +32,7 @@ const DEVIATOR: f64 = 0.125;
 impl Dual {
     /// What is added to the rows of F: -c_p/4 r e - c_d/2 D, `c` being c_p.
     #[inline(always)]
-    pub fn incompatible<L: Lane>(
-        minus: &Trace<L>,
-        plus: &Trace<L>,
-        n: [L; 2],
-        c: L,
-        medium: &Medium<L>,
-    ) -> [L; 4] {
+    pub fn incompatible<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], c: L, medium: &Medium<L>) -> [L; 4] {
         let (half, m, p) = (L::splat(0.5), minus.f, plus.f);
         let f = [half * (m[0] + p[0]), half * (m[1] + p[1]), half * (m[2] + p[2]), half * (m[3] + p[3])];
         let j = [p[0] - m[0], p[1] - m[1], p[2] - m[2], p[3] - m[3]];

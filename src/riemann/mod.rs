@@ -53,11 +53,7 @@ impl Medium<f64> {
     #[inline(always)]
     pub fn splat<L: Lane>(&self) -> Medium<L> {
         let [density, shear_impedance, share] = [self.density, self.shear_impedance, self.share];
-        Medium {
-            density: L::splat(density),
-            shear_impedance: L::splat(shear_impedance),
-            share: L::splat(share),
-        }
+        Medium { density: L::splat(density), shear_impedance: L::splat(shear_impedance), share: L::splat(share) }
     }
 }
 

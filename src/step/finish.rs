@@ -2,10 +2,10 @@
 //! variables and the survey of what has come out.
 
 use super::balance::{self, Sums};
+use super::curl::{self, Relax};
 use super::sums::Terms;
 use super::survey::{Examine, History, Worst};
 use super::volume::{Masses, cofactors, row, with_nodes};
-use super::curl::{self, Relax};
 use super::{Phase, Scheme, Scratch, Speeds, Stage, Survey, across, flux};
 use crate::lane::{F8, Lanes, Work};
 use crate::operators::{Line, Metric, determinant};
