@@ -177,10 +177,10 @@ impl Case<'_> {
     }
 
     fn flux(&self) -> Option<String> {
-        let (flux, other) = (self.scene.scheme.flux, Flux::Rusanov);
-        let (name, memory) = (other.name(), self.has_memory());
-        (flux != other && !memory)
-            .then(|| format!("scheme.flux = \"{}\" damps compression less than \"{name}\"", flux.name()))
+        let flux = self.scene.scheme.flux;
+        let why = if self.has_memory() { "makes energy in plastic flow" } else { "holds less in compression" };
+        (flux != Flux::Dual)
+            .then(|| format!("scheme.flux = \"{}\" {why}: leave it out, for the default \"dual\"", flux.name()))
     }
 
     fn law(&self) -> Option<String> {

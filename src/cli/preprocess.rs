@@ -1,7 +1,7 @@
 //! `dgmpm preprocess`: all matrices, and what the run will cost.
 
 use super::pipeline::{self, Body, Files, Store};
-use super::print::{mebibytes, note, row, say, seconds, table};
+use super::print::{mebibytes, note, row, say, seconds, table, warn};
 use super::{SceneArgs, certificates, keep, notices};
 use crate::error::{Error, Result};
 use crate::io::operators_file;
@@ -91,6 +91,8 @@ pub fn report(
     certificates::word(scene, body).into_iter().for_each(say);
     let first = (cost.steps, cost.dt);
     notices::of_run(scene, body, (scheme, state), &cost.survey, first).iter().for_each(note);
+    certificates::memory(body).into_iter().for_each(say);
+    certificates::warning(scene, body, &certificates).iter().for_each(warn);
     if let Some(growth) = cfl::growth(&scheme.method, scene.scheme.degree) {
         note(format!(
             "ADER of degree {} grows weakly at any dt: {growth:.0e} a step, a factor of {:.3} over this run",

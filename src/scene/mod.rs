@@ -42,7 +42,7 @@ pub use culprit::Culprit;
 pub use exact::{Exact, SOLUTIONS};
 pub use expression::{Expression, FUNCTIONS, Fault};
 pub use laws::{LAWS, Law, Parameter};
-pub use names::{Method, Sweeps};
+pub use names::{Histories, Method, Sweeps};
 use origin::{Origin, Part};
 
 /// A whole scene.
@@ -153,6 +153,8 @@ pub struct Material {
     pub parameters: BTreeMap<String, f64>,
     /// Where its points stand.
     pub cloud: Cloud,
+    /// Where its internal variables stand; `None`: its law has none.
+    pub histories: Option<Histories>,
 }
 
 /// The state at the start; its expressions depend on x and y only.

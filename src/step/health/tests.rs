@@ -1,8 +1,8 @@
 //! J below 0 is found wherever it is looked at, and named by its place; a state from outside and one from a step alike.
 use super::*;
-use crate::step::Speeds;
 use crate::cloud::{Cloud, seed};
 use crate::mesh::{Mesh, rectangle};
+use crate::step::Speeds;
 use crate::step::tests::{KINDS, Kind, distorted, midpoints, scheme, state, unpacked, wall, wavy};
 use crate::step::{Survey, Work};
 
@@ -63,7 +63,11 @@ fn a_step_from_a_state_with_j_below_0_at_a_face_is_lost_there_by_all_methods() {
         let scheme = scheme(&mesh, kind, 2, &cloud(&mesh), wall);
         let state = lost_in(&mesh, &scheme, 8, &AT_FACE);
         let mut work = Work::new(&scheme, &state);
-        let survey = Survey { speed: vec![Speeds { fastest: F8::splat(1.5), ..Speeds::default() }; 2], fastest: 1.5, min_j: 1.0 };
+        let survey = Survey {
+            speed: vec![Speeds { fastest: F8::splat(1.5), ..Speeds::default() }; 2],
+            fastest: 1.5,
+            min_j: 1.0,
+        };
         // So short a step that averages over it are the state to 1e-6.
         scheme.step(&state, 1e-7, &survey, &mut work);
         let loss = scheme.surveyed(&mut work, &mut Survey::default()).unwrap_err();
