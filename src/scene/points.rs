@@ -83,7 +83,8 @@ pub(super) fn cloud(table: Option<&mut Reader>, degree: usize) -> Result<General
         limits = Limits { condition: limit, lattices: true, ..limits };
     }
     table.finish()?;
-    Ok(General { cloud, limits, named: pattern.is_some() || matches!(cloud.layout, Layout::File(_)), histories })
+    let named = pattern.is_some() || matches!(cloud.layout, Layout::File(_));
+    Ok(General { cloud, limits, named, histories })
 }
 
 /// Reads the points of a `[[material]]`, and where its internal variables stand (none: the law has none).
