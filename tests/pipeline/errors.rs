@@ -49,7 +49,7 @@ fn a_state_that_is_sick_only_between_its_nodes_is_bad_input_too() {
     )
     .unwrap();
     assert!(
-        message.contains("the initial state is lost: J = ") && message.contains("in cell 1, at face point"),
+        message.contains("the initial state is lost: J = ") && message.contains("at material point"),
         "{message}"
     );
 }

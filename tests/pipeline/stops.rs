@@ -10,7 +10,7 @@ fn a_run_that_loses_stability_says_where_and_keeps_a_good_state() {
     let crush = "--set boundary.0.kind=clamped --set boundary.1.kind=velocity --set boundary.1.value=[\"-5e8*t\",0.0]";
     for method in ["ader-dgmpm", "rk-dgfem"] {
         let message = bench.fail(3, &format!("run case.toml --force {crush} --set scheme.method={method}"));
-        for words in ["step ", "t = ", "in cell ", " point ", "X = (", "steps before, is in runs/case/snapshots/"] {
+        for words in ["step ", "t = ", "in cell ", ", at ", "X = (", "steps before, is in runs/case/snapshots/"] {
             assert!(message.contains(words), "{words}: {message}");
         }
         let summary = bench.summary("runs/case");
