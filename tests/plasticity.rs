@@ -84,6 +84,9 @@ fn errors_of_the_elastoplastic_impact_fall_with_the_mesh_for_all_methods() {
 const CYCLES: &str = r#"
 [mesh]
 rectangle = { size = [1.0, 1.0], cells = [2, 2] }
+[cloud]
+layout = "paper"
+histories = "points"               # also away from the nodes: the update of points is what is tested
 [[material]]
 law = "j2"
 young = 2e11
@@ -133,7 +136,8 @@ impl March {
         let mesh = scene.build_mesh().unwrap();
         let (cloud, material) = (scene.build_cloud(&mesh).unwrap(), scene.material_of_cells(&mesh));
         let links = scene.links(&mesh).unwrap();
-        let operators = Operators::build(&mesh, &links, &material, &scene.needs(&cloud)).unwrap();
+        let places = scene.places(&cloud, &material);
+        let operators = Operators::build(&mesh, &links, &material, &scene.needs(&places)).unwrap();
         let scheme = scene.build_scheme(&mesh, operators, kernel);
         let state = scene.initial_state(&mesh, &scheme).unwrap();
         let work = Work::new(&scheme, &state).with_balance(&scheme);
@@ -400,7 +404,8 @@ const FIELDS: [&str; 2] = ["plastic_strain", "inverse_plastic_metric"];
 #[test]
 fn exported_points_show_their_own_history_and_the_grid_that_of_the_nearest() {
     for method in METHODS {
-        let sets = ["mesh.rectangle={size=[3.0,0.1],cells=[30,1]}", "cloud.layout=jitter", "output.1.samples=31"];
+        let cloud = "cloud={layout=\"jitter\",histories=\"points\"}";
+        let sets = ["mesh.rectangle={size=[3.0,0.1],cells=[30,1]}", cloud, "output.1.samples=31"];
         let outcome = run("bar_plastic.toml", &[&sets[..], &[&format!("scheme.method={method}")]].concat());
         let (snapshot, grid, points) = export(&outcome.path());
         let of = |path: &Path| vtu_field(path, FIELDS[0]).unwrap();

@@ -73,13 +73,14 @@ impl Setup {
         let settings = scene.settings()?;
         let cloud = scene.sample(&mesh, scene.build_cloud(&mesh)?)?.cloud;
         let material = scene.material_of_cells(&mesh);
-        let operators = Operators::build(&mesh, &scene.links(&mesh)?, &material, &scene.needs(&cloud))?;
+        let places = scene.places(&cloud, &material);
+        let operators = Operators::build(&mesh, &scene.links(&mesh)?, &material, &scene.needs(&places))?;
         let scheme = scene.build_scheme(&mesh, operators, self.kernel);
         let exact = scene.build_exact().ok_or_else(|| Error::input("the scene has no [exact]", "keep that table"))?;
         let wave = Wave::new(exact);
         let start = wave.state(&mesh, &scheme);
         let nodes = mesh.cells.len() * scheme.operators.nodes();
-        let points = if scene.scheme.method == Method::AderDgmpm { cloud.len() } else { nodes };
+        let points = if scene.scheme.method == Method::AderDgmpm { places.len() } else { nodes };
         let h = smallest_h(&mesh);
         Ok(Problem { mesh, material, points, scheme, start, wave, settings, h })
     }

@@ -1,12 +1,13 @@
-//! What cells can carry, in words: classes, the worst cells, those with virtual points, and the refusal of `--strict`.
+//! What cells can carry, in words: classes, the worst cells, those with virtual points, the refusal of `--strict`, and
+//! where laws with memory sample.
 
 use super::pipeline::Body;
 use super::print::row;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::operators::carry::{Cause, Deficient};
-use crate::operators::{Certificate, Class, Limits};
-use crate::scene::{Method, Scene};
+use crate::operators::carry::{Cause, Deficient, stand_on_nodes};
+use crate::operators::{Certificate, Class, Limits, Line};
+use crate::scene::{Histories, Method, Scene};
 
 /// Cells that a list names before it only counts.
 const NAMED: usize = 3;
@@ -34,9 +35,38 @@ pub fn rows(mesh: &Mesh, certificates: &[Certificate]) -> Vec<(String, String)> 
     rows
 }
 
-/// The word on cells with virtual points; none where there are none.
+/// The word on cells of laws with memory that sample on their Gauss nodes and not at their points; none where there are none.
+pub fn memory(body: &Body) -> Option<String> {
+    let (count, cells) = (body.deficient.iter().filter(|d| d.cause == Cause::Memory).count(), body.mesh.cells.len());
+    let say = || {
+        format!(
+            "{count} of {cells} cells sample on their Gauss nodes, and have their internal variables there: {}; their \
+             material points are carried along",
+            why(Cause::Memory, &Limits::of_degree(0))
+        )
+    };
+    (count > 0).then(say)
+}
+
+/// The warning on internal variables that the scene keeps at points away from the Gauss nodes; none where none are.
+pub fn warning(scene: &Scene, body: &Body, certificates: &[Certificate]) -> Option<String> {
+    let at_points = |cell: &usize| scene.materials[body.material[*cell]].histories == Some(Histories::Points);
+    if scene.scheme.method != Method::AderDgmpm {
+        return None;
+    }
+    let nodes = Line::new(scene.scheme.degree).nodes();
+    let away = (0..body.mesh.cells.len()).filter(at_points).filter(|&c| !stand_on_nodes(&nodes, body.cloud.of(c)));
+    let largest = away.map(|cell| certificates[cell].lebesgue).reduce(f64::max)?;
+    Some(format!(
+        "histories = \"points\": this layout makes energy in plastic flow (face Lebesgue constant {largest:.2}; Taylor bars \
+         gained 4 to 80 % and more); with histories = \"nodes\" or layout = \"gauss\" they gain none"
+    ))
+}
+
+/// The word on cells that cannot carry the degree and have virtual points; none where there are none.
 pub fn word(scene: &Scene, body: &Body) -> Option<String> {
-    let (all, cells) = (&body.deficient, body.mesh.cells.len());
+    let all: Vec<&Deficient> = body.deficient.iter().filter(|d| d.cause != Cause::Memory).collect();
+    let cells = body.mesh.cells.len();
     if all.is_empty() {
         return None;
     }
@@ -44,7 +74,7 @@ pub fn word(scene: &Scene, body: &Body) -> Option<String> {
     let causes = [Cause::Few, Cause::Rank, Cause::Lebesgue, Cause::Condition];
     let causes = causes.into_iter().map(|cause| (count(cause), cause)).filter(|(count, _)| *count > 0);
     let causes: Vec<String> = causes.map(|(count, cause)| format!("{count} {}", why(cause, &scene.limits))).collect();
-    let mut worst: Vec<&Deficient> = all.iter().collect();
+    let mut worst = all.clone();
     worst.sort_by(|a, b| {
         (a.given.rank, b.given.lebesgue).partial_cmp(&(b.given.rank, a.given.lebesgue)).unwrap_or(a.cell.cmp(&b.cell))
     });
@@ -64,6 +94,7 @@ fn why(cause: Cause, limits: &Limits) -> String {
         Cause::Rank => "with points in bad places".to_owned(),
         Cause::Lebesgue => format!("beyond a Lebesgue constant of {}", limits.lebesgue),
         Cause::Condition => format!("beyond a condition of {:e}", limits.condition),
+        Cause::Memory => "their law has memory and their points are not on the Gauss nodes".to_owned(),
     }
 }
 
@@ -90,7 +121,9 @@ pub fn strict(scene: &Scene, body: &Body) -> Result<()> {
     let limits = Limits { lattices: true, ..scene.limits };
     let kept = body.certificates(scene)?.into_iter().enumerate();
     let lattices = kept.filter(|(_, c)| c.class != Class::Deficient && limits.cause(c, m * m).is_some());
-    let mut bad: Vec<(usize, Certificate)> = body.deficient.iter().map(|d| (d.cell, d.given)).chain(lattices).collect();
+    // Where the law has memory nothing is asked of the points.
+    let replaced = body.deficient.iter().filter(|d| d.cause != Cause::Memory).map(|d| (d.cell, d.given));
+    let mut bad: Vec<(usize, Certificate)> = replaced.chain(lattices).collect();
     bad.sort_by_key(|(cell, _)| *cell);
     if bad.is_empty() {
         return Ok(());

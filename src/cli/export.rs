@@ -101,7 +101,7 @@ impl Export {
             all => all,
         };
         let cell_fields = export::cell_fields(&body.mesh, &certificates, &body.material);
-        let places = self.scene.places(&body.cloud);
+        let places = body.places(&self.scene).into_owned();
         Ok(Sheet { files: files.clone(), body, places, cell_fields })
     }
 

@@ -15,6 +15,7 @@ use crate::scene::regrid::NewMesh;
 use crate::scene::{Scene, build, portable, read_points};
 use crate::state::State;
 use crate::step::{Loss, Scheme};
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// Files of earlier stages; what is not given is made from the scene.
@@ -32,27 +33,36 @@ pub struct Files {
 pub struct Body {
     /// The mesh.
     pub mesh: Mesh,
-    /// The material points that the scheme samples on.
+    /// The material points; the scheme samples at [`Body::places`].
     pub cloud: Cloud,
     /// Whether each of them is virtual; empty where none is.
     pub virtual_points: Vec<bool>,
-    /// The cells that have virtual points in place of those given.
+    /// The cells that have virtual points in place of those given, and those that sample on others than their points.
     pub deficient: Vec<Deficient>,
     /// The number of the material of each cell.
     pub material: Vec<usize>,
 }
 
 impl Body {
+    /// Where the scheme samples: the material points, or the Gauss nodes.
+    pub fn places(&self, scene: &Scene) -> Cow<'_, Cloud> {
+        scene.places(&self.cloud, &self.material)
+    }
+
     /// Certificates of all cells at the points where the method samples (nodes for RK), without dt.
     ///
     /// # Errors
     /// As for the fit of a cell.
     pub fn certificates(&self, scene: &Scene) -> Result<Vec<Certificate>> {
-        let sampling = scene.needs(&self.cloud).sampling.unwrap_or(Sampling::Nodes);
+        let places = self.places(scene);
+        let sampling = scene.needs(&places).sampling.unwrap_or(Sampling::Nodes);
         let mut all = certify(&self.mesh, &Line::new(scene.scheme.degree), sampling)?;
-        if let Sampling::Cloud(cloud) = sampling {
+        if let Sampling::Cloud(_) = sampling {
+            let on_nodes = scene.on_nodes(&self.material);
             for (cell, certificate) in all.iter_mut().enumerate() {
-                if self.virtual_points.get(cloud.first[cell]) == Some(&true) && certificate.points > 0 {
+                if on_nodes.get(cell) == Some(&true) {
+                    certificate.class = Class::Nodes;
+                } else if self.virtual_points.get(self.cloud.first[cell]) == Some(&true) && certificate.points > 0 {
                     certificate.class = Class::Deficient;
                 }
             }
@@ -108,7 +118,8 @@ pub struct Store<'a> {
 /// # Errors
 /// A cell whose points cannot carry the degree; a file that cannot be written.
 pub fn operators(scene: &Scene, body: &Body, store: &Store) -> Result<(Operators, String)> {
-    let needs = scene.needs(&body.cloud);
+    let places = body.places(scene);
+    let needs = scene.needs(&places);
     let links = scene.links(&body.mesh)?;
     let (line, blocks) = (Line::new(needs.degree), Blocks::new(&body.material, &links));
     let key = operators_file::key(&body.mesh, &scene.periodic_groups(&body.mesh), &body.material, &needs);

@@ -1,7 +1,7 @@
 //! `dgmpm preprocess`: all matrices, and what the run will cost.
 
 use super::pipeline::{self, Body, Files, Store};
-use super::print::{mebibytes, row, say, seconds, table};
+use super::print::{mebibytes, row, say, seconds, table, warn};
 use super::{SceneArgs, certificates, keep};
 use crate::error::{Error, Result};
 use crate::io::operators_file;
@@ -88,6 +88,8 @@ pub fn report(
     rows.push(row("estimate", format!("{:.0} steps, {}", cost.steps, seconds(cost.seconds))));
     table(&rows);
     certificates::word(scene, body).into_iter().for_each(say);
+    certificates::memory(body).into_iter().for_each(say);
+    certificates::warning(scene, body, &certificates).iter().for_each(warn);
     if let Some(growth) = cfl::growth(&scheme.method, scene.scheme.degree) {
         say(format!(
             "note: ADER of degree {} grows weakly at any dt: {growth:.0e} a step, a factor of {:.3} over this run",

@@ -120,7 +120,7 @@ fn read_body(scene: &Scene, from: &Folder, files: &GridFiles) -> Result<Body> {
 
 fn build_scheme(scene: &Scene, body: &Body) -> Result<Scheme> {
     let links = scene.links(&body.mesh)?;
-    let operators = Operators::build(&body.mesh, &links, &body.material, &scene.needs(&body.cloud))?;
+    let operators = Operators::build(&body.mesh, &links, &body.material, &scene.needs(&body.places(scene)))?;
     Ok(pipeline::scheme(scene, body, operators, Kernel::widest()))
 }
 
@@ -160,7 +160,7 @@ fn moved(
     let new = State::pack(&after.operators.blocks, n, components, &moved.u);
     let mut new = State { time: state.time, step: state.step, ..new };
     let to = Grid { mesh: &body.mesh, material: &body.material };
-    after.set_internal(&mut new, &internal((from, scheme), state, (to, &after), &moved.same, &placed)?);
+    after.set_internal(&mut new, &internal((from, &old.cloud, scheme), state, (to, &after), &moved.same, &placed)?);
     Ok((body, after, new))
 }
 

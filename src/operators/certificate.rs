@@ -15,7 +15,7 @@ names! {
         Dense = "dense",
         /// Points that cannot carry Q_N: virtual ones stand on the Gauss nodes in their place, see [`super::carry`].
         Deficient = "deficient",
-        /// The Gauss nodes themselves: methods without points.
+        /// The Gauss nodes themselves: methods without points, and laws with memory.
         Nodes = "nodes",
     }
 }

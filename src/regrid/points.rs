@@ -56,6 +56,9 @@ pub struct Demand<'a> {
     pub virtual_points: &'a [bool],
     /// Whether a law has internal variables, whose sources are then looked for.
     pub histories: bool,
+    /// The new cells that sample on their Gauss nodes whatever their points are (laws with memory): nothing is asked of
+    /// their points; empty: none.
+    pub on_nodes: &'a [bool],
 }
 
 /// A point of a new cell.
@@ -77,11 +80,13 @@ pub fn place(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>], dema
         Policy::Layout => (of_layout(cloud, same, demand.fresh), 0),
         Policy::Keep | Policy::Enrich => stay(old, cloud, new, same),
     };
-    // A cell whose points are as they were is not looked at: what it could carry it can.
+    // A cell whose points are as they were is not looked at: what it could carry it can; nor one whose points carry nothing.
     let changed: Vec<bool> = seats
         .iter()
         .zip(same)
         .map(|(seats, same)| same.is_none_or(|twin| cloud.of(twin).len() != seats.len()))
+        .enumerate()
+        .map(|(cell, changed)| changed && demand.on_nodes.get(cell) != Some(&true))
         .collect();
     if demand.samples {
         if demand.policy == Policy::Enrich {
@@ -282,6 +287,7 @@ mod tests {
             limits: &limits,
             virtual_points,
             histories: true,
+            on_nodes: &[],
         };
         (place(&old, &case.cloud, &new, &same, &demand).unwrap(), same)
     }

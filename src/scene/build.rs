@@ -106,16 +106,6 @@ impl Scene {
         laws(&self.materials)
     }
 
-    /// Where internal variables stand, as [`Scheme::places`] has it: the cloud, or the nodes.
-    pub fn places(&self, cloud: &Cloud) -> Cloud {
-        if self.scheme.method == Method::AderDgmpm {
-            return cloud.clone();
-        }
-        let (nodes, cells) = (crate::operators::Line::new(self.scheme.degree).nodes(), cloud.first.len() - 1);
-        let first = (0..=cells).map(|cell| cell * nodes.len()).collect();
-        Cloud { first, xi: std::iter::repeat_n(nodes, cells).flatten().collect() }
-    }
-
     /// Time integration.
     fn integration(&self) -> Integration {
         let (n, n_t) = (self.scheme.degree, self.scheme.time_degree);

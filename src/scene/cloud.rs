@@ -1,13 +1,14 @@
 //! From a scene to the material points, and to those that the scheme samples on.
 
-use super::{Body, Cloud as Choice, Layout, Method, Scene};
+use super::{Body, Cloud as Choice, Histories, Layout, Method, Scene};
 use crate::cloud::{Cloud, Locator, Pattern, body, from_points, seed};
 use crate::error::{Error, Place, Result};
 use crate::io::grid::Field;
 use crate::io::{cloud_file, points, store};
 use crate::mesh::Mesh;
-use crate::operators::carry::Deficient;
+use crate::operators::carry::{Cause, Deficient};
 use crate::operators::{Line, carry};
+use std::borrow::Cow;
 use std::path::Path;
 
 /// Points as a file or a scene gives them.
@@ -41,7 +42,7 @@ pub fn read_points(path: &Path, mesh: &Mesh) -> Result<Given> {
     Ok(Given { cloud, virtual_points: vec![], fields })
 }
 
-/// The cloud that the scheme samples on.
+/// The material points of a run. The scheme samples at them, but for cells of a law with memory: see [`Scene::places`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sampled {
     /// Its points.
@@ -50,7 +51,7 @@ pub struct Sampled {
     pub virtual_points: Vec<bool>,
     /// For each of them the given point that it is or that is nearest; empty where they are the given points.
     pub source: Vec<usize>,
-    /// The cells that have virtual points in place of the given ones.
+    /// The cells that have virtual points in place of the given ones, and those that sample on others than their points.
     pub deficient: Vec<Deficient>,
 }
 
@@ -111,8 +112,8 @@ impl Scene {
         Cloud::of_cells(mesh.cells.len(), push)
     }
 
-    /// The points that the scheme samples on: where the method has points, virtual ones stand in cells that cannot carry
-    /// the degree.
+    /// The material points of the run: where the method has points, virtual ones stand in cells that cannot carry the
+    /// degree. Cells of a law with memory keep theirs, whatever the scheme samples on.
     ///
     /// # Errors
     /// A part of the body without any point.
@@ -120,12 +121,52 @@ impl Scene {
         if self.scheme.method != Method::AderDgmpm {
             return Ok(Sampled::as_given(cloud));
         }
-        let found = carry(mesh, &Line::new(self.scheme.degree), &cloud, &self.limits)?;
-        if found.deficient.is_empty() {
-            return Ok(Sampled::as_given(cloud));
+        let memory = self.on_nodes(&self.material_of_cells(mesh));
+        let found = carry(mesh, &Line::new(self.scheme.degree), &cloud, &self.limits, &memory)?;
+        if found.deficient.iter().all(|cell| cell.cause == Cause::Memory) {
+            return Ok(Sampled { deficient: found.deficient, ..Sampled::as_given(cloud) });
         }
-        let virtual_points = found.kept.iter().map(|kept| !kept).collect();
-        Ok(Sampled { cloud: found.cloud, virtual_points, source: found.source, deficient: found.deficient })
+        let mut out = Sampled { cloud: Cloud { first: vec![0], xi: vec![] }, ..Sampled::default() };
+        for cell in 0..mesh.cells.len() {
+            let points = found.cloud.first[cell]..found.cloud.first[cell + 1];
+            let (xi, source) = match memory.get(cell) {
+                Some(true) => (cloud.of(cell), (cloud.first[cell]..cloud.first[cell + 1]).collect()),
+                _ => (found.cloud.of(cell), found.source[points.clone()].to_vec()),
+            };
+            let is_virtual = memory.get(cell) != Some(&true) && found.kept[points].contains(&false);
+            out.virtual_points.resize(out.virtual_points.len() + xi.len(), is_virtual);
+            out.source.extend(source);
+            out.cloud.xi.extend_from_slice(xi);
+            out.cloud.first.push(out.cloud.xi.len());
+        }
+        Ok(Sampled { deficient: found.deficient, ..out })
+    }
+
+    /// Whether each cell samples on its Gauss nodes although the method has points: its law has memory, and the scene does
+    /// not keep the histories at the points. Empty: no cell does. `material` has the number of the material of each cell.
+    pub fn on_nodes(&self, material: &[usize]) -> Vec<bool> {
+        let of = |m: &super::Material| m.histories == Some(Histories::Nodes);
+        if self.scheme.method != Method::AderDgmpm || !self.materials.iter().any(of) {
+            return vec![];
+        }
+        material.iter().map(|&m| of(&self.materials[m])).collect()
+    }
+
+    /// Where the scheme samples and internal variables stand, as [`Scheme::places`](crate::step::Scheme::places) has it: the
+    /// material points, or the Gauss nodes where the method has no points or the law has memory.
+    pub fn places<'a>(&self, cloud: &'a Cloud, material: &[usize]) -> Cow<'a, Cloud> {
+        let on_nodes = match self.scheme.method {
+            Method::AderDgmpm => self.on_nodes(material),
+            Method::AderDgfem | Method::RkDgfem => vec![true; material.len()],
+        };
+        if !on_nodes.contains(&true) {
+            return Cow::Borrowed(cloud);
+        }
+        let nodes = Line::new(self.scheme.degree).nodes();
+        let push = |cell: usize, xi: &mut Vec<[f64; 2]>| {
+            xi.extend_from_slice(if on_nodes[cell] { &nodes } else { cloud.of(cell) });
+        };
+        Cow::Owned(Cloud::of_cells(material.len(), push))
     }
 }
 

@@ -114,7 +114,8 @@ impl Scene {
 
     /// The largest face Lebesgue constant.
     fn worst_certificate(&self, present: &Present) -> f64 {
-        let sampling = self.needs(present.cloud).sampling.unwrap_or(Sampling::Nodes);
+        let places = self.places(present.cloud, present.material);
+        let sampling = self.needs(&places).sampling.unwrap_or(Sampling::Nodes);
         let all = certify(present.view.mesh, &Line::new(self.scheme.degree), sampling);
         // A fit that fails is worse than any limit.
         all.map_or(f64::INFINITY, |all| all.iter().map(|c| c.lebesgue).fold(0.0, f64::max))

@@ -14,6 +14,14 @@ pub struct Law {
     pub build: Build,
 }
 
+impl Law {
+    /// Whether it has internal variables.
+    pub fn has_memory(&self) -> bool {
+        // What they are does not depend on the parameters: these are in the range of all of them.
+        !(self.build)(&|_| 0.25, 1.0).internal().is_empty()
+    }
+}
+
 /// Parameters by name and rho0 to a law.
 pub type Build = fn(&dyn Fn(&str) -> f64, f64) -> material::Law;
 

@@ -39,7 +39,7 @@ pub use cloud::{Given, Sampled, read_points};
 pub use exact::{Exact, SOLUTIONS};
 pub use expression::{Expression, FUNCTIONS, Fault};
 pub use laws::{LAWS, Law, Parameter};
-pub use names::{Method, Sweeps};
+pub use names::{Histories, Method, Sweeps};
 use origin::{Origin, Part};
 
 /// A whole scene.
@@ -148,6 +148,8 @@ pub struct Material {
     pub parameters: BTreeMap<String, f64>,
     /// Where its points stand.
     pub cloud: Cloud,
+    /// Where its internal variables stand; `None`: its law has none.
+    pub histories: Option<Histories>,
 }
 
 /// The state at the start; its expressions depend on x and y only.

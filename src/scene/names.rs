@@ -13,6 +13,16 @@ names! {
 }
 
 names! {
+    /// Where P and the internal variables of a law with memory stand, for the method with points.
+    Histories {
+        /// On the Gauss nodes, wherever the points are: no energy is made.
+        Nodes = "nodes",
+        /// At the points. Away from the Gauss nodes plastic flow makes energy: for studies.
+        Points = "points",
+    }
+}
+
+names! {
     /// The schedule of the predictor's Picard sweeps.
     Sweeps {
         /// max(N, N_T) + 1 sweeps on all time nodes.

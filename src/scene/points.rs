@@ -3,10 +3,22 @@
 use std::path::PathBuf;
 
 use super::reader::{Check, FINITE, POSITIVE, Reader};
-use super::{Body, Cloud, Layout};
+use super::{Body, Cloud, Histories, Law, Layout};
 use crate::cloud::seed;
 use crate::error::Result;
 use crate::operators::Limits;
+
+/// What `[cloud]` says for all materials.
+pub(super) struct General {
+    /// Where points stand.
+    pub cloud: Cloud,
+    /// What cells may have of them.
+    pub limits: Limits,
+    /// Whether the layout is the scene's; else it is the default, and laws with memory have one of their own.
+    named: bool,
+    /// Where laws with memory have their internal variables.
+    histories: Histories,
+}
 
 /// All keys of [`points`], which a run folder replaces by its file.
 pub(super) const KEYS: [&str; 8] =
@@ -43,11 +55,14 @@ const RADIUS: Check = Check { range: "from 0 to 1 (of the cell)", holds: |a| (0.
 const AT_LEAST_ONE: Check = Check { range: "at least 1", holds: |a| a >= 1.0 };
 
 /// Reads `[cloud]`.
-pub(super) fn cloud(table: Option<&mut Reader>, degree: usize) -> Result<(Cloud, Limits)> {
+pub(super) fn cloud(table: Option<&mut Reader>, degree: usize) -> Result<General> {
     let layout = Layout::InCells(seed::default_layout(degree));
     let (default, mut limits) = (Cloud { layout, per_direction: degree + 1 }, Limits::of_degree(degree));
-    let Some(table) = table else { return Ok((default, limits)) };
+    let Some(table) = table else {
+        return Ok(General { cloud: default, limits, named: false, histories: Histories::Nodes });
+    };
     let pattern = table.choice("layout", &PATTERNS, &[])?;
+    let histories = table.choice("histories", Histories::NAMES, &[])?.unwrap_or(Histories::Nodes);
     let cloud = match pattern {
         Some(Pattern::File) => {
             let path = table.text("path")?;
@@ -64,18 +79,35 @@ pub(super) fn cloud(table: Option<&mut Reader>, degree: usize) -> Result<(Cloud,
         limits = Limits { condition: limit, lattices: true, ..limits };
     }
     table.finish()?;
-    Ok((cloud, limits))
+    Ok(General { cloud, limits, named: pattern.is_some(), histories })
 }
 
-/// Reads the points of a `[[material]]`; `cloud` are those of `[cloud]`.
-pub(super) fn of_material(table: &mut Reader, cloud: &Cloud, degree: usize) -> Result<Cloud> {
+/// Reads the points of a `[[material]]`, and where its internal variables stand (none: the law has none).
+pub(super) fn of_material(
+    table: &mut Reader,
+    general: &General,
+    law: &Law,
+    degree: usize,
+) -> Result<(Cloud, Option<Histories>)> {
+    let has_memory = law.has_memory();
+    let mut cloud = general.cloud.clone();
+    if has_memory && !general.named {
+        // The Gauss nodes, which histories then need not leave.
+        cloud.layout = Layout::InCells(seed::Layout::Gauss);
+    }
+    let histories = table.choice("histories", Histories::NAMES, &[])?;
+    if histories.is_some() && !has_memory {
+        let what = format!("the law \"{}\" has no internal variables", law.name);
+        return Err(table.wrong("histories", what, "remove this key"));
+    }
+    let histories = has_memory.then(|| histories.unwrap_or(general.histories));
     let pattern = table.choice("layout", &PATTERNS[..PATTERNS.len() - 1], &[])?;
     if matches!(cloud.layout, Layout::File(_)) && (pattern.is_some() || table.has("per_direction")) {
         let key = if pattern.is_some() { "layout" } else { "per_direction" };
         let remedy = "remove this key, or change [cloud] layout";
         return Err(table.wrong(key, "the points come from the file of [cloud]", remedy));
     }
-    points(table, pattern, cloud.clone(), degree)
+    Ok((points(table, pattern, cloud, degree)?, histories))
 }
 
 /// The keys that [cloud] and [[material]] share.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use toml_edit::Document;
 
 use super::origin::Origin;
+use super::points::General;
 use super::reader::{Check, FINITE, POSITIVE, Reader};
 use super::{
     Boundary, Cloud, Condition, Curl, Expression, Flux, Initial, LAWS, Layout, Material, Mesh, Method, Scene, Scheme,
@@ -34,18 +35,18 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     let need = |key: &'static str, remedy: &str| root.missing(key, remedy);
     let mesh = mesh(mesh_table.as_mut().ok_or_else(|| need("mesh", "add [mesh] with file = \"name.msh\""))?)?;
     let scheme = scheme(scheme_table.as_mut().ok_or_else(|| need("scheme", "add [scheme] with method and degree"))?)?;
-    let (cloud, limits) = super::points::cloud(cloud_table.as_mut(), scheme.degree)?;
+    let general = super::points::cloud(cloud_table.as_mut(), scheme.degree)?;
     if material_tables.is_empty() {
         return Err(need("material", "add [[material]] with law, density and the law's parameters"));
     }
-    let materials = materials(&mut material_tables, &cloud, scheme.degree)?;
+    let materials = materials(&mut material_tables, &general, scheme.degree)?;
     let (start, end) = time(time_table.as_mut().ok_or_else(|| need("time", "add [time] with end, in s"))?)?;
     let scene = Scene {
         title: title.unwrap_or_else(|| origin.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),
         mesh,
-        initial: initial(initial_table.as_mut(), &cloud)?,
-        cloud,
-        limits,
+        initial: initial(initial_table.as_mut(), &general.cloud)?,
+        cloud: general.cloud,
+        limits: general.limits,
         exact: super::exact::exact(exact_table.as_mut(), initial_table.is_none())?,
         boundaries: boundaries(boundary_tables)?,
         sources: source_tables.into_iter().map(source).collect::<Result<_>>()?,
@@ -120,11 +121,11 @@ fn scheme(table: &mut Reader) -> Result<Scheme> {
     Ok(Scheme { method, degree, time_degree, flux, step, sweeps })
 }
 
-fn materials(tables: &mut [Reader], cloud: &Cloud, degree: usize) -> Result<Vec<Material>> {
+fn materials(tables: &mut [Reader], general: &General, degree: usize) -> Result<Vec<Material>> {
     let several = tables.len() > 1;
     let mut materials: Vec<Material> = Vec::with_capacity(tables.len());
     for table in tables {
-        let material = material(table, cloud, degree)?;
+        let material = material(table, general, degree)?;
         if several && material.group.is_none() {
             return Err(table.missing("group", "with several materials each names its group of cells"));
         }
@@ -138,7 +139,7 @@ fn materials(tables: &mut [Reader], cloud: &Cloud, degree: usize) -> Result<Vec<
     Ok(materials)
 }
 
-fn material(table: &mut Reader, cloud: &Cloud, degree: usize) -> Result<Material> {
+fn material(table: &mut Reader, general: &General, degree: usize) -> Result<Material> {
     let group = table.text("group")?;
     let laws: Vec<(&str, usize)> = LAWS.iter().enumerate().map(|(i, law)| (law.name, i)).collect();
     let names: Vec<String> = laws.iter().map(|(name, _)| format!("\"{name}\"")).collect();
@@ -150,7 +151,7 @@ fn material(table: &mut Reader, cloud: &Cloud, degree: usize) -> Result<Material
     for parameter in law.parameters {
         given.push((parameter, table.number(parameter.name, parameter.check)?));
     }
-    let cloud = super::points::of_material(table, cloud, degree)?;
+    let (cloud, histories) = super::points::of_material(table, general, law, degree)?;
     table.finish()?;
     let density = density.ok_or_else(|| table.missing("density", "the density at t = 0, in kg/m^3"))?;
     let mut parameters = std::collections::BTreeMap::new();
@@ -159,7 +160,7 @@ fn material(table: &mut Reader, cloud: &Cloud, degree: usize) -> Result<Material
         let value = value.ok_or_else(|| table.missing(parameter.name, remedy.trim_end()))?;
         parameters.insert(parameter.name.to_owned(), value);
     }
-    Ok(Material { group, law: law.name.to_owned(), density, parameters, cloud })
+    Ok(Material { group, law: law.name.to_owned(), density, parameters, cloud, histories })
 }
 
 fn initial(table: Option<&mut Reader>, cloud: &Cloud) -> Result<Initial> {

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::io::grid::{self, Kind};
 use crate::mesh::{Mesh, map};
 use crate::observe::Solution;
-use crate::operators::{Limits, carry, from_points};
+use crate::operators::{carry, from_points};
 use crate::state::{State, UNKNOWNS};
 use crate::step::Scheme;
 
@@ -36,17 +36,20 @@ impl Scene {
     /// Internal variables where the scheme has them, in the order of [`Scheme::internal_of`]: those of the same given point or
     /// of the nearest one, never interpolated.
     fn internal_of_points(&self, mesh: &Mesh, scheme: &Scheme, given: &Given) -> Result<Vec<f64>> {
-        // Nodes are to the cloud what virtual points are.
-        let nodes = Limits { lebesgue: 0.0, condition: 0.0, lattices: true };
-        let limits = if self.scheme.method == Method::AderDgmpm { self.limits } else { nodes };
-        let carried = carry(mesh, &scheme.operators.line, &given.cloud, &limits)?;
+        let material = self.material_of_cells(mesh);
+        let on_nodes = match self.scheme.method {
+            Method::AderDgmpm => self.on_nodes(&material),
+            // Nodes are to the cloud what virtual points are.
+            Method::AderDgfem | Method::RkDgfem => vec![true; material.len()],
+        };
+        let carried = carry(mesh, &scheme.operators.line, &given.cloud, &self.limits, &on_nodes)?;
         let of_law = |law: usize| {
             let names = scheme.laws[law].internal().iter();
             names.map(|name| self.variable_of(given, name)).collect::<Result<Vec<_>>>()
         };
         let columns = (0..scheme.laws.len()).map(of_law).collect::<Result<Vec<_>>>()?;
         let mut values = Vec::new();
-        for (cell, law) in self.material_of_cells(mesh).into_iter().enumerate() {
+        for (cell, law) in material.into_iter().enumerate() {
             for &p in &carried.source[carried.cloud.first[cell]..carried.cloud.first[cell + 1]] {
                 values.extend(columns[law].iter().map(|(values, stride, k)| values[stride * p + k]));
             }

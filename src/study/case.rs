@@ -113,7 +113,9 @@ impl Case {
             mesh = mesh.refined(self.parts());
         }
         let cloud = scene.sample(&mesh, scene.build_cloud(&mesh)?)?.cloud;
-        let (material, needs) = (scene.material_of_cells(&mesh), scene.needs(&cloud));
+        let material = scene.material_of_cells(&mesh);
+        let places = scene.places(&cloud, &material);
+        let needs = scene.needs(&places);
         let operators = Operators::build(&mesh, &scene.links(&mesh)?, &material, &needs)?;
         let scheme = scene.build_scheme(&mesh, operators, Kernel::widest());
         let start = scene.initial_state(&mesh, &scheme)?;

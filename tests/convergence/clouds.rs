@@ -146,7 +146,7 @@ fn mixed(mesh: &Mesh, columns: &[usize], degree: usize) -> Cloud {
             _ => vec![[0.3, 0.4]],
         });
     });
-    operators::carry(mesh, &Line::new(degree), &given, &Limits::of_degree(degree)).unwrap().cloud
+    operators::carry(mesh, &Line::new(degree), &given, &Limits::of_degree(degree), &[]).unwrap().cloud
 }
 
 #[test]
@@ -223,7 +223,7 @@ fn restarted(degree: usize, n: usize, finer: f64, grids: [Grid; 2]) -> f64 {
     let values: Vec<f64> = order.iter().flat_map(|&p| values[6 * p..6 * p + 6].to_vec()).collect();
     let line = Line::new(degree);
     let start = operators::from_points(&new, &line, &cloud, &Limits::of_degree(degree), &values, 6).unwrap();
-    let carried = operators::carry(&new, &line, &cloud, &Limits::of_degree(degree)).unwrap();
+    let carried = operators::carry(&new, &line, &cloud, &Limits::of_degree(degree), &[]).unwrap();
     println!("  {} of {} cells from their neighbours' points", carried.deficient.len(), new.cells.len());
     let target = scheme_on(&problem, &new, Sampling::Cloud(&carried.cloud), degree);
     let start = State { time: 0.05, ..State::pack(&target.operators.blocks, n_nodes, 6, &start) };

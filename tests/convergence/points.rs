@@ -61,7 +61,7 @@ impl Points {
 
     /// The cloud that the scheme samples on.
     pub fn carried(self, mesh: &Mesh, degree: usize) -> Carried {
-        carry(mesh, &Line::new(degree), &self.cloud(mesh, degree), &Limits::of_degree(degree)).unwrap()
+        carry(mesh, &Line::new(degree), &self.cloud(mesh, degree), &Limits::of_degree(degree), &[]).unwrap()
     }
 }
 

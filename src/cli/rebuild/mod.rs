@@ -5,6 +5,7 @@ mod outcome;
 
 use super::pipeline::{self, Body};
 use super::print::say;
+use crate::cloud::Cloud;
 use crate::error::{Error, Result};
 use crate::io::cloud_file::{self, More};
 use crate::io::csv::Table;
@@ -47,7 +48,7 @@ pub struct Regrids<'a> {
     /// The rule that fired last, and the mesh that it asks for.
     due: Option<(usize, Result<crate::mesh::Mesh>)>,
     material: Vec<usize>,
-    cloud: crate::cloud::Cloud,
+    cloud: Cloud,
     /// Matrices by key, the latest last.
     cache: VecDeque<(String, Stored)>,
     files: HashMap<String, GridFiles>,
@@ -138,8 +139,8 @@ impl<'a> Regrids<'a> {
         let scheme = pipeline::scheme(self.scene, &body, operators, self.kernel);
         let new = State::pack(&scheme.operators.blocks, n, state.components, &moved.u);
         let mut new = State { time: state.time, step: state.step, ..new };
-        let (before, after) =
-            ((grid(&old.body.mesh, &old.body.material), &old.scheme), (grid(&body.mesh, &body.material), &scheme));
+        let before = (grid(&old.body.mesh, &old.body.material), &old.body.cloud, &old.scheme);
+        let after = (grid(&body.mesh, &body.material), &scheme);
         let internal = internal(before, state, after, &moved.same, &placed)?;
         scheme.set_internal(&mut new, &internal);
         let totals = [old.scheme.totals(state), scheme.totals(&new)];
@@ -161,7 +162,8 @@ impl<'a> Regrids<'a> {
 
     /// The operators, their matrices from memory where they have been built before.
     fn operators(&mut self, body: &Body, links: &[[crate::mesh::Link; 4]]) -> Result<Operators> {
-        let needs = self.scene.needs(&body.cloud);
+        let places = body.places(self.scene);
+        let needs = self.scene.needs(&places);
         let (line, blocks) = (Line::new(needs.degree), Blocks::new(&body.material, links));
         let key = operators_file::key(&body.mesh, &self.scene.periodic_groups(&body.mesh), &body.material, &needs);
         let known = self.cache.iter().position(|(known, _)| *known == key).and_then(|k| self.cache.remove(k));
@@ -220,7 +222,7 @@ pub fn scale(scheme: &Scheme) -> Vec<[f64; 8]> {
 
 /// Internal variables of a state at the points (or nodes) of a new grid; empty where no law has any.
 pub fn internal(
-    (from, before): (Grid, &Scheme),
+    (from, cloud, before): (Grid, &Cloud, &Scheme),
     state: &State,
     (to, after): (Grid, &Scheme),
     same: &[Option<usize>],
@@ -231,13 +233,15 @@ pub fn internal(
         return Ok(vec![]);
     }
     let (places, new, values) = (before.places(), after.places(), before.internal_of(state));
-    if new == placed.cloud {
+    if places == *cloud && new == placed.cloud {
         return Ok(histories(&from, &places, placed, &values, &count));
     }
     // The law is evaluated at the nodes, which are new points in cells that are new.
+    let stays = |(cell, twin): (usize, &Option<usize>)| twin.filter(|&twin| places.of(twin) == new.of(cell));
+    let same = &same.iter().enumerate().map(stays).collect::<Vec<_>>();
     let (line, limits) = (&after.operators.line, &Limits::of_degree(after.operators.degree));
     let (policy, fresh, virtual_points) = (Policy::Layout, &new, &[][..]);
-    let demand = Demand { line, policy, fresh, samples: false, limits, virtual_points, histories: true };
+    let demand = Demand { line, policy, fresh, samples: false, limits, virtual_points, histories: true, on_nodes: &[] };
     Ok(histories(&from, &places, &place(&from, &places, &to, same, &demand)?, &values, &count))
 }
 
@@ -252,14 +256,15 @@ pub fn place_points(
     scheme: &Scheme,
 ) -> Result<Placed> {
     let fresh = match policy {
-        Policy::Keep => crate::cloud::Cloud::default(),
+        Policy::Keep => Cloud::default(),
         Policy::Enrich | Policy::Layout => scene.build_cloud(to.mesh)?,
     };
     let samples = scene.scheme.method == Method::AderDgmpm;
     let histories = scheme.laws.iter().any(|law| !law.internal().is_empty());
     let (limits, virtual_points) = (&scene.limits, &old.virtual_points[..]);
     let line = &scheme.operators.line;
-    let demand = Demand { line, policy, fresh: &fresh, samples, limits, virtual_points, histories };
+    let on_nodes = &scene.on_nodes(to.material);
+    let demand = Demand { line, policy, fresh: &fresh, samples, limits, virtual_points, histories, on_nodes };
     place(from, &old.cloud, to, &moved.same, &demand)
 }
 
