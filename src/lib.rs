@@ -69,6 +69,7 @@ pub mod observe;
 pub mod run;
 pub mod exact;
 pub mod scene;
+pub mod stability;
 pub mod study;
 pub mod bench;
 pub mod cli;

@@ -1,0 +1,85 @@
+//! Eigenvalues, with the eigenvalue 0 split off where it hides what is looked for.
+//!
+//! Rigid rotations and their rates make Jordan blocks of the eigenvalue 0 of G, which rounding of 1e-16 scatters over 1e-8.
+//! The kernel is split off: with an orthonormal basis (N, R) of kernel and rest, G has the eigenvalues 0 and those of
+//! R* G R; so it is done again until no kernel is left.
+
+use super::operator::Rate;
+use crate::error::{Error, Result};
+use faer::traits::ComplexField;
+use faer::traits::ext::ComplexFieldExt;
+use faer::{Mat, c64};
+use std::ops::{Add, Mul};
+
+/// Singular values below this, in c/h, are 0.
+const KERNEL: f64 = 1e-8;
+/// Growth below this, in c/h, may be 0 that rounding has scattered.
+const DOUBTFUL: f64 = 1e-4;
+/// A number of matrices.
+pub trait Number: ComplexField<Real = f64> + Copy + Add<Output = Self> + Mul<f64, Output = Self> {}
+
+impl Number for f64 {}
+impl Number for c64 {}
+
+/// ln |1 + dt mu| / dt, in c/h, of an eigenvalue mu of a rate; its real part in the limit.
+pub fn growth(mu: c64, courant: Option<f64>) -> f64 {
+    match courant {
+        None => mu.re,
+        Some(dt) => 0.5 * (dt * (2.0 * mu.re + dt * mu.norm_sqr())).ln_1p() / dt,
+    }
+}
+
+/// The largest growth of a matrix of a rate, c/h.
+///
+/// # Errors
+/// The QR algorithm does not end.
+pub fn worst<N: Number>(matrix: Mat<N>, courant: Option<f64>) -> Result<f64> {
+    let largest = |matrix: &Mat<N>| -> Result<f64> {
+        let values = matrix.eigenvalues().map_err(|_| no_end())?;
+        Ok(values.into_iter().map(|mu| growth(mu, courant)).fold(f64::NEG_INFINITY, f64::max))
+    };
+    let first = largest(&matrix)?;
+    if !(0.0..DOUBTFUL).contains(&first) {
+        return Ok(first);
+    }
+    let before = matrix.nrows();
+    let rest = without_kernel(matrix)?;
+    match rest.nrows() {
+        0 => Ok(0.0),
+        left if left == before => Ok(first),
+        _ => Ok(largest(&rest)?.max(0.0)),
+    }
+}
+
+/// The matrix on what is left of its kernel.
+fn without_kernel<N: Number>(mut matrix: Mat<N>) -> Result<Mat<N>> {
+    loop {
+        let size = matrix.nrows();
+        if size == 0 {
+            return Ok(matrix);
+        }
+        // Singular values fall.
+        let svd = matrix.svd().map_err(|_| no_end())?;
+        let rank = (0..size).filter(|&k| svd.S().column_vector()[k].abs() > KERNEL).count();
+        if rank == size {
+            return Ok(matrix);
+        }
+        let rest = svd.V().subcols(0, rank);
+        matrix = rest.adjoint() * &matrix * rest;
+    }
+}
+
+pub fn no_end() -> Error {
+    Error::input("the eigenvalues of this case cannot be computed", "give another state or a smaller body")
+}
+
+/// Growth of a rate at some Bloch angles, or of a body.
+///
+/// # Errors
+/// As for [`worst`].
+pub fn growth_at(rate: &Rate, theta: [f64; 2]) -> Result<f64> {
+    match rate.periodic {
+        true => worst(rate.symbol(theta), rate.courant),
+        false => worst(rate.matrix(), rate.courant),
+    }
+}
