@@ -144,14 +144,14 @@ pub fn measure(setup: &Setup, questions: Questions) -> Result<Measured> {
         cells,
         unknowns,
         courant,
-        growth,
+        growth: growth * unit,
         radius,
         theta,
         limit,
         energy: gain * unit,
         definite,
         norms,
-        noise: how.noise,
+        noise: how.noise * unit,
     })
 }
 
