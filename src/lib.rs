@@ -65,6 +65,7 @@ pub mod source;
 pub mod step;
 pub mod regrid;
 pub mod io;
+pub mod chart;
 pub mod observe;
 pub mod run;
 pub mod exact;

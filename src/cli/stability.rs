@@ -1,9 +1,11 @@
 //! `dgmpm stability`: how perturbations of a state grow.
 
 use super::print::say;
+use crate::chart;
 use crate::error::{Error, Result};
+use crate::io::pending::write_text;
 use crate::scene::Scene;
-use crate::stability::{Domain, Pattern, Plan, Questions, Row, lines, measure};
+use crate::stability::{self, Domain, Pattern, Plan, Questions, Row, csv, lines, measure, values};
 use std::path::PathBuf;
 
 /// Arguments.
@@ -77,6 +79,15 @@ pub struct Args {
     /// Bloch angles a direction
     #[arg(long, value_name = "N", default_value_t = 12)]
     angles: usize,
+    /// Write all numbers into a CSV file
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Plot growth over the last list of numbers (svg or png)
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// Replace files of an earlier run
+    #[arg(long)]
+    force: bool,
     /// Threads [default: all processors]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
@@ -86,18 +97,31 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     args.threads.map_or(Ok(()), super::start_threads)?;
     let questions = Questions { angles: args.angles.max(2), limit: args.limit, norms: args.norms };
+    for path in [&args.csv, &args.plot].into_iter().flatten() {
+        if path.exists() && !args.force {
+            return Err(Error::input(
+                format!("{} exists", path.display()),
+                "give --force to replace it, or another name",
+            ));
+        }
+    }
+    let cases = args.plan()?.cases()?;
+    if args.plot.is_some() {
+        stability::axis(&cases)?;
+    }
     let mut rows = Vec::new();
-    for case in args.plan()?.cases()? {
+    for case in cases {
         let found = measure(&case.setup, questions)?;
         rows.push(Row { case, found });
     }
     lines(&rows).iter().for_each(say);
+    args.csv.as_ref().map_or(Ok(()), |path| write_text(path, &csv(&rows)))?;
+    args.plot.as_ref().map_or(Ok(()), |path| chart::save(&stability::chart(&rows)?, path))?;
     Ok(())
 }
 
 impl Args {
     fn plan(&self) -> Result<Plan> {
-        let list = |text: &str| text.split(',').map(|value| value.trim().to_owned()).collect::<Vec<_>>();
         let mut lists = Vec::new();
         if let Some(f) = &self.deformation {
             lists.push(("deformation".to_owned(), vec![f.clone()]));
@@ -116,12 +140,16 @@ impl Args {
             ("safety", &self.safety),
             ("dt", &self.dt),
         ];
-        lists.extend(named.iter().filter_map(|(key, text)| Some((key.to_string(), list(text.as_ref()?)))));
+        for (key, text) in named {
+            if let Some(text) = text {
+                lists.push((key.to_owned(), values(text)?));
+            }
+        }
         for text in &self.over {
             let remedy = "write --over poisson=.3,.45,.4999";
-            let (key, values) =
+            let (key, list) =
                 text.split_once('=').ok_or_else(|| Error::input(format!("--over is `{text}`"), remedy))?;
-            lists.push((key.trim().to_owned(), list(values)));
+            lists.push((key.trim().to_owned(), stability::values(list)?));
         }
         let pattern = match &self.pattern[..] {
             "checkerboard" => Pattern::Checkerboard,

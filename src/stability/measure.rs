@@ -18,7 +18,7 @@ const DEFINITE: f64 = 1e-9;
 /// The limit is found to this part.
 const RESOLUTION: f64 = 1e-3;
 /// Most unknowns of a body: the matrix is full, and its eigenvalues take minutes.
-const MOST_UNKNOWNS: usize = 2500;
+const MOST_UNKNOWNS: usize = 4000;
 
 /// What is asked.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -182,21 +182,40 @@ impl Limit<'_> {
                 return Ok(stable);
             }
         }
-        while unstable / stable > 1.0 + RESOLUTION {
-            let middle = (stable * unstable).sqrt();
-            if self.is_stable(middle, &mut hint)? { stable = middle } else { unstable = middle }
+        loop {
+            while unstable / stable > 1.0 + RESOLUTION {
+                let middle = (stable * unstable).sqrt();
+                if self.is_stable(middle, &mut hint)? { stable = middle } else { unstable = middle }
+            }
+            // The angles of the grid are stable; those between may be worse.
+            let rate = Rate::new(self.problem, &self.how, Operator::Step(stable))?;
+            let worst = angles::worst(&rate, self.angles)?;
+            if worst.growth <= self.bound(stable) {
+                return Ok(stable);
+            }
+            hint = Some(worst.theta);
+            (stable, unstable) = (0.99 * stable, stable);
+            while !self.is_stable(stable, &mut hint)? {
+                (stable, unstable) = (0.99 * stable, stable);
+                if stable < 0.05 * known {
+                    return Ok(0.0);
+                }
+            }
         }
-        Ok(stable)
+    }
+
+    /// The growth that counts as none, c/h.
+    fn bound(&self, courant: f64) -> f64 {
+        let scheme = &self.problem.scheme;
+        let known = cfl::growth(&scheme.method, scheme.operators.degree);
+        known.map_or(TOLERANCE, |growth| 2.0 * growth).ln_1p() / courant
     }
 
     fn is_stable(&self, courant: f64, hint: &mut Option<[f64; 2]>) -> Result<bool> {
         let rate = Rate::new(self.problem, &self.how, Operator::Step(courant));
         // Beyond the limit numbers may leave what can be represented.
         let Ok(rate) = rate else { return Ok(false) };
-        let scheme = &self.problem.scheme;
-        let known = cfl::growth(&scheme.method, scheme.operators.degree);
-        let bound = known.map_or(TOLERANCE, |growth| 2.0 * growth).ln_1p() / courant;
-        let found = angles::above(&rate, self.angles, bound, *hint)?;
+        let found = angles::above(&rate, self.angles, self.bound(courant), *hint)?;
         *hint = found.or(*hint);
         Ok(found.is_none())
     }

@@ -83,3 +83,51 @@ pub fn growth_at(rate: &Rate, theta: [f64; 2]) -> Result<f64> {
         false => worst(rate.matrix(), rate.courant),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Q diag(blocks) Q^T with an orthogonal Q that mixes all rows: a reflection.
+    fn mixed(blocks: Mat<f64>) -> Mat<f64> {
+        let n = blocks.nrows();
+        let v = |i: usize| (1.0 + i as f64) / (0..n).map(|k| (1.0 + k as f64).powi(2)).sum::<f64>().sqrt();
+        let q = Mat::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - 2.0 * v(i) * v(j));
+        &q * blocks * &q
+    }
+
+    #[test]
+    fn jordan_blocks_of_zero_do_not_look_like_growth() {
+        // Blocks of zero of sizes 3 and 2, and two decaying numbers.
+        let blocks = Mat::from_fn(7, 7, |i, j| match (i, j) {
+            (0, 1) | (1, 2) | (3, 4) => 1.0,
+            (5, 5) | (6, 6) => -1.0,
+            (5, 6) => 5.0,
+            _ => 0.0,
+        });
+        let matrix = mixed(blocks);
+        let bare = matrix.eigenvalues().unwrap().into_iter().map(|mu| mu.re).fold(0.0, f64::max);
+        // A cube root of rounding: what is cured.
+        assert!(bare > 1e-9, "{bare:e}");
+        assert_eq!(worst(matrix, None).unwrap(), 0.0);
+    }
+
+    #[test]
+    fn small_growth_beside_a_kernel_is_kept() {
+        let blocks = Mat::from_fn(4, 4, |i, j| match (i, j) {
+            (0, 1) => 1.0,
+            (2, 2) => 1e-6,
+            (3, 3) => -2.0,
+            _ => 0.0,
+        });
+        // Rounding of a matrix of order one.
+        assert!((worst(mixed(blocks), None).unwrap() - 1e-6).abs() < 1e-14);
+    }
+
+    #[test]
+    fn growth_of_a_step_is_the_logarithm_of_the_modulus() {
+        let (mu, dt) = (c64::new(-0.3, 2.0), 0.2_f64);
+        let expected = (c64::new(1.0, 0.0) + mu * dt).norm().ln() / dt;
+        assert!((growth(mu, Some(dt)) - expected).abs() < 1e-14);
+    }
+}

@@ -1,8 +1,15 @@
-//! Results as rows of a table and as CSV.
+//! Results as rows of a table, as CSV and as a chart.
 
-use super::cases::Case;
+use super::cases::{self, Case};
 use super::measure::Measured;
+use crate::chart::{Chart, Line, Marker, Scale};
+use crate::error::Result;
 use std::f64::consts::PI;
+
+/// The keys that have a column of their own in any case.
+const OWN: [&str; 5] = ["method", "degree", "layout", "flux", "curl"];
+/// Numbers whose largest is so many times the smallest stand on a logarithmic axis.
+const WIDE: f64 = 100.0;
 
 /// A case with what was found, or why nothing was.
 #[derive(Debug, Clone)]
@@ -40,7 +47,7 @@ fn columns(rows: &[Row]) -> Vec<Column> {
     text("curl", |row| Some(row.found.names.curl.clone()));
     text("cells", |row| Some(row.found.cells.to_string()));
     for (k, (key, _)) in first.case.labels.iter().enumerate() {
-        if !["method", "degree", "layout", "flux", "curl"].contains(&&key[..]) {
+        if !OWN.contains(&&key[..]) {
             out.push((key.clone(), Box::new(move |row: &Row| row.case.labels[k].1.clone())));
         }
     }
@@ -55,7 +62,8 @@ fn columns(rows: &[Row]) -> Vec<Column> {
     number("limit dt c/h", |found| found.limit);
     number("angle x", |found| Some(found.theta?[0] * 180.0 / PI));
     number("angle y", |found| Some(found.theta?[1] * 180.0 / PI));
-    number("energy h/c_p", |found| Some(found.energy));
+    let energy = |row: &Row| short(row.found.energy) + if row.found.definite { "" } else { "*" };
+    out.push(("energy h/c_p".to_owned(), Box::new(energy)));
     for (k, head) in ["|S|", "|S^10|", "|S^100|"].into_iter().enumerate() {
         if rows.iter().any(|row| row.found.norms.is_some()) {
             out.push((head.to_owned(), Box::new(move |row: &Row| row.found.norms.map_or("-".into(), |n| short(n[k])))));
@@ -79,5 +87,76 @@ pub fn lines(rows: &[Row]) -> Vec<String> {
         let width = cells.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
         out.iter_mut().zip(cells).for_each(|(line, cell)| *line += &format!("{cell:<width$}  "));
     }
-    out.iter().map(|line| line.trim_end().to_owned()).collect()
+    let mut out: Vec<String> = out.iter().map(|line| line.trim_end().to_owned()).collect();
+    if rows.iter().any(|row| !row.found.definite) {
+        out.push("* the energy of this state is indefinite: a gain alone is no fault".to_owned());
+    }
+    out
+}
+
+/// All numbers with all digits, angles in degrees; rates in c_p/h, steps in c/h.
+pub fn csv(rows: &[Row]) -> String {
+    let keys = rows.first().map_or(&[][..], |row| &row.case.labels);
+    let own: Vec<usize> = (0..keys.len()).filter(|&k| !OWN.contains(&&keys[k].0[..])).collect();
+    let mut text = "method,degree,layout,flux,curl,cells,unknowns".to_owned();
+    own.iter().for_each(|&k| text += &format!(",{}", keys[k].0));
+    text += ",step,spectral_radius,growth,limit,angle_1,angle_2,energy_growth,energy_definite,max_norm_1,max_norm_10,\
+             max_norm_100,noise\n";
+    for Row { case, found } in rows {
+        let names = &found.names;
+        let layout = names.layout.as_deref().unwrap_or_default();
+        text += &format!("{},{},{layout},{},{}", names.method, names.degree, names.flux, names.curl);
+        text += &format!(",{},{}", found.cells, found.unknowns);
+        // F0 has commas of its own.
+        own.iter().for_each(|&k| text += &format!(",\"{}\"", case.labels[k].1));
+        let angles = found.theta.map(|theta| theta.map(|angle| angle * 180.0 / PI));
+        let norm = |k: usize| found.norms.map(|norms| norms[k]);
+        let numbers = [
+            found.courant,
+            found.radius,
+            Some(found.growth),
+            found.limit,
+            angles.map(|a| a[0]),
+            angles.map(|a| a[1]),
+            Some(found.energy),
+            Some(f64::from(u8::from(found.definite))),
+            norm(0),
+            norm(1),
+            norm(2),
+            Some(found.noise),
+        ];
+        numbers.iter().for_each(|x| text += &x.map_or(",".to_owned(), |x| format!(",{x:?}")));
+        text.push('\n');
+    }
+    text
+}
+
+/// Growth over the last list of numbers, a line for each combination of the others.
+///
+/// # Errors
+/// No list of at least two numbers.
+pub fn chart(rows: &[Row]) -> Result<Chart> {
+    let cases: Vec<Case> = rows.iter().map(|row| row.case.clone()).collect();
+    let axis = cases::axis(&cases)?;
+    let others: Vec<usize> = (0..cases[0].labels.len()).filter(|k| *k != axis && cases::varies(&cases, *k)).collect();
+    let mut lines: Vec<Line> = Vec::new();
+    for row in rows {
+        let name: Vec<String> = others.iter().map(|&k| row.case.labels[k].1.clone()).collect();
+        let name = if name.is_empty() { row.found.names.method.clone() } else { name.join(" ") };
+        let point = (row.case.number(axis).unwrap_or(f64::NAN), row.found.growth);
+        match lines.iter_mut().find(|line| line.name == name) {
+            Some(line) => line.points.push(point),
+            None => lines.push(Line { name, colour: lines.len() + 1, marker: Marker::Circle, points: vec![point] }),
+        }
+    }
+    let all = || cases.iter().filter_map(|case| case.number(axis));
+    let (low, high) = all().fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+    let x = if low > 0.0 && high > WIDE * low { Scale::Log } else { Scale::Linear };
+    Ok(Chart {
+        title: "Growth of perturbations".to_owned(),
+        x: rows[0].case.labels[axis].0.replace("dt", "dt c/h"),
+        y: "growth h/c_p".to_owned(),
+        scales: [x, Scale::Linear],
+        lines,
+    })
 }
