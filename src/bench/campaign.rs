@@ -1,14 +1,14 @@
 //! All measurements of `make bench`, into CSV, tables and pictures.
 
-use super::chart::{Chart, Line, Marker};
 use super::summary::{self, Row};
 use super::{Domain, Figures, Flops, Length, Measured, Peaks, Setup, count, measure, peaks};
+use crate::chart::{Chart, Line, Marker, Scale, save};
 use crate::error::Result;
 use crate::io::pending::write_text;
 use crate::lane::Kernel;
 use crate::scene::Method;
 use crate::scene::build::read_mesh;
-use crate::study::{machine, plot::save};
+use crate::study::machine;
 use std::path::{Path, PathBuf};
 
 /// Sizes, in grid unknowns: near the caches, in memory, and what fills it.
@@ -203,6 +203,7 @@ fn rates(rows: &[Row]) -> Chart {
         title: "Speed of the step, one thread".to_owned(),
         x: "degrees of freedom".to_owned(),
         y: "DoF-updates/s".to_owned(),
+        scales: [Scale::Log; 2],
         lines,
     }
 }
@@ -230,6 +231,7 @@ fn roofline(rows: &[Row]) -> Chart {
         title: "Roofline of one thread, 9e5 DoF".to_owned(),
         x: "flops per byte (counted flops; state, traces and operators from memory)".to_owned(),
         y: "flops/s".to_owned(),
+        scales: [Scale::Log; 2],
         lines,
     }
 }

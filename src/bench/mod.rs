@@ -6,7 +6,6 @@
 //! not timed. Flops are counted by running the same kernels on [`crate::lane::counted`].
 
 mod campaign;
-mod chart;
 mod flops;
 mod measure;
 mod peaks;

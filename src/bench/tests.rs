@@ -1,15 +1,14 @@
 use super::campaign::SIZES;
-use super::chart::{Chart, Line, Marker};
 use super::summary::{self, Row};
 use super::*;
 use crate::basis::TimeBasis;
+use crate::chart::{Chart, Line, Marker, Scale, save};
 use crate::lane::counted::{self, Counts, SLOTS};
 use crate::lane::{F8, Kernel, Lanes, Work, load_array};
 use crate::material::{LinearElastic, Material, NeoHookean};
 use crate::scene::Method;
 use crate::step::Phase;
 use crate::step::sweeps::{Sweep, Sweeps};
-use crate::study::plot::save;
 
 fn setup(method: Method, degree: usize, layout: &str) -> Setup {
     Setup {
@@ -193,10 +192,13 @@ fn a_chart_is_drawn_and_an_empty_one_refused() {
     let line = |marker| Line { name: format!("{marker:?}"), colour: 2, marker, points: vec![(1.0, 10.0), (5.0, 70.0)] };
     let markers = [Marker::Bare, Marker::Circle, Marker::Triangle, Marker::Square, Marker::Cross];
     let [title, x, y] = ["title", "x", "y"].map(str::to_owned);
-    let chart = Chart { title, x, y, lines: markers.map(line).to_vec() };
+    let chart = Chart { title, x, y, scales: [Scale::Log; 2], lines: markers.map(line).to_vec() };
     save(&chart, &folder.path().join("chart.svg")).unwrap();
     let svg = std::fs::read_to_string(folder.path().join("chart.svg")).unwrap();
     assert!(svg.starts_with("<svg") && markers.iter().all(|marker| svg.contains(&format!("{marker:?}"))));
+    for scales in [[Scale::Linear; 2], [Scale::Log, Scale::Linear]] {
+        save(&Chart { scales, ..chart.clone() }, &folder.path().join("linear.svg")).unwrap();
+    }
     let empty = Chart { lines: vec![], ..chart };
     assert!(save(&empty, &folder.path().join("empty.png")).is_err());
 }

@@ -15,6 +15,7 @@ mod regrid;
 mod run;
 mod seed;
 mod solve;
+mod stability;
 mod study;
 mod summary;
 
@@ -59,6 +60,8 @@ enum Command {
     Run(run::Args),
     /// Show what accuracy costs in time: methods, degrees and meshes on one problem
     Study(study::Args),
+    /// Tell how perturbations of a state grow: spectrum of the linearised step of a patch or a small body
+    Stability(stability::Args),
     /// Measure the speed of the step against the peaks of this machine
     Bench(bench::Args),
     /// Bring a stopped run to another mesh
@@ -108,6 +111,7 @@ fn command(cli: Cli) -> Result<()> {
         Command::Solve(args) => solve::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Study(args) => study::run(&args),
+        Command::Stability(args) => stability::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Regrid(args) => regrid::run(&args),
         Command::Export(args) => export::run(&args),

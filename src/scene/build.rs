@@ -107,7 +107,7 @@ impl Scene {
     }
 
     /// Time integration.
-    fn integration(&self) -> Integration {
+    pub fn integration(&self) -> Integration {
         let (n, n_t) = (self.scheme.degree, self.scheme.time_degree);
         match self.scheme.method {
             Method::RkDgfem => Integration::RungeKutta(Tableau::of_degree(n_t)),

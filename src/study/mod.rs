@@ -8,7 +8,7 @@
 mod case;
 mod choice;
 mod front;
-pub(crate) mod plot;
+mod plot;
 mod predict;
 mod reference;
 mod session;

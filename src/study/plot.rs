@@ -1,14 +1,13 @@
 //! Work-precision plots, in logarithms, one line a series: as SVG and as PNG.
 
 use super::case::{Record, Series};
-use crate::error::{Error, Result};
-use crate::io::pending::Pending;
+use crate::chart::{COLOURS, FONT, Picture, SIZE, decades, save, square};
+use crate::error::Result;
 use crate::scene::Method;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::path::Path;
-use std::sync::Once;
 
 /// The abscissa.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,21 +17,6 @@ pub enum Axis {
     /// Grid unknowns.
     Dofs,
 }
-
-/// Pixels.
-pub const SIZE: (u32, u32) = (900, 620);
-/// The font of all text.
-pub const FONT: &str = "sans-serif";
-/// By degree from 0; told apart by the colour-blind, too (Okabe, Ito).
-pub const COLOURS: [RGBColor; 7] = [
-    RGBColor(120, 120, 120),
-    RGBColor(230, 159, 0),
-    RGBColor(0, 114, 178),
-    RGBColor(0, 158, 115),
-    RGBColor(213, 94, 0),
-    RGBColor(204, 121, 167),
-    RGBColor(86, 180, 233),
-];
 
 impl Axis {
     fn of(self, record: &Record) -> f64 {
@@ -50,38 +34,6 @@ impl Axis {
     }
 }
 
-/// Something to draw.
-pub trait Picture {
-    /// Draws it on an area of [`SIZE`].
-    ///
-    /// # Errors
-    /// Where there is nothing to draw, or the backend cannot.
-    fn draw<B: DrawingBackend>(&self, area: DrawingArea<B, Shift>) -> std::result::Result<(), String>;
-}
-
-/// Draws a picture into `path`, whose ending (`svg`, `png`) says how.
-///
-/// # Errors
-/// Where there is nothing to draw, or the file cannot be written.
-pub fn save<P: Picture>(picture: &P, path: &Path) -> Result<()> {
-    fonts();
-    let pending = Pending::new(path)?;
-    let failed = |why: String| Error::output(path, why);
-    if path.extension().is_some_and(|ending| ending == "svg") {
-        let mut text = String::new();
-        picture.draw(SVGBackend::with_string(&mut text, SIZE).into_drawing_area()).map_err(failed)?;
-        std::fs::write(pending.path(), text).map_err(|why| Error::output(path, why))?;
-    } else {
-        // The bitmap backend tells the format from the ending, which a pending file has not.
-        let mut pixels = vec![255; 3 * SIZE.0 as usize * SIZE.1 as usize];
-        let area = BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area();
-        picture.draw(area).map_err(failed)?;
-        let file = std::fs::File::create(pending.path()).map_err(|why| Error::output(path, why))?;
-        write_png(file, &pixels).map_err(|why| Error::output(path, why))?;
-    }
-    pending.commit()
-}
-
 /// Error over `axis`, a line a series.
 struct WorkPrecision<'a> {
     records: &'a [Record],
@@ -95,27 +47,12 @@ impl Picture for WorkPrecision<'_> {
     }
 }
 
-/// Draws error over `axis` into `path`, as [`save`].
+/// Draws error over `axis` into `path`, as [`crate::chart::save`].
 ///
 /// # Errors
-/// As for [`save`].
+/// As for [`crate::chart::save`].
 pub fn plot(records: &[Record], axis: Axis, title: &str, path: &Path) -> Result<()> {
     save(&WorkPrecision { records, axis, title }, path)
-}
-
-/// The font comes with the program: a machine without a desktop has none.
-fn fonts() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        // The one possible fault, a file that is no font, is excluded by the test that draws with it.
-        let _ = plotters::style::register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
-    });
-}
-
-fn write_png(file: std::fs::File, pixels: &[u8]) -> std::result::Result<(), png::EncodingError> {
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), SIZE.0, SIZE.1);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.write_header()?.write_image_data(pixels)
 }
 
 /// Records of a series that can stand in a plot, from coarse to fine.
@@ -194,11 +131,6 @@ fn draw<B: DrawingBackend>(
     area.present().map_err(text)
 }
 
-/// A square of 9 x 9 pixels.
-pub fn square(at: (i32, i32), style: ShapeStyle) -> plotters::element::Rectangle<(i32, i32)> {
-    plotters::element::Rectangle::new([(at.0 - 4, at.1 - 4), (at.0 + 4, at.1 + 4)], style)
-}
-
 /// Line k of the legend, right of the chart.
 fn legend<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
@@ -216,11 +148,4 @@ fn legend<B: DrawingBackend>(
     }
     let style = (FONT, 15).into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
     area.draw(&Text::new(series.name(), (x + 26, y), style))
-}
-
-/// Whole decades around positive numbers.
-pub fn decades(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
-    let (low, high) = (low.log10().floor(), high.log10().ceil());
-    (10_f64.powf(low), 10_f64.powf(if high > low { high } else { low + 1.0 }))
 }

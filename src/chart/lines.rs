@@ -1,0 +1,167 @@
+//! Charts of lines, on logarithmic or linear axes.
+
+use super::{COLOURS, FONT, Picture, SIZE, decades, square};
+use plotters::coord::Shift;
+use plotters::coord::ranged1d::ValueFormatter;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// How the points of a line look.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Marker {
+    /// None: a bare line, in grey.
+    Bare,
+    /// Circles: RK-DGFEM.
+    Circle,
+    /// Triangles: ADER-DGFEM.
+    Triangle,
+    /// Squares: ADER-DGMPM.
+    Square,
+    /// Crosses: ADER-DGMPM on an arbitrary cloud.
+    Cross,
+}
+
+/// A line of a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Its name in the legend.
+    pub name: String,
+    /// Number of its colour: the degree.
+    pub colour: usize,
+    /// Its points.
+    pub marker: Marker,
+    /// Where they are.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// How an axis runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// In logarithms, over whole decades.
+    Log,
+    /// Linear.
+    Linear,
+}
+
+/// A picture of lines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    /// Above it.
+    pub title: String,
+    /// Below the abscissa.
+    pub x: String,
+    /// Beside the ordinate.
+    pub y: String,
+    /// How abscissa and ordinate run.
+    pub scales: [Scale; 2],
+    /// The lines.
+    pub lines: Vec<Line>,
+}
+
+impl Picture for Chart {
+    fn draw<B: DrawingBackend>(&self, area: DrawingArea<B, Shift>) -> Result<(), String> {
+        let text = |why: DrawingAreaErrorKind<B::ErrorType>| why.to_string();
+        let all = || self.lines.iter().flat_map(|line| &line.points);
+        if all().next().is_none() {
+            return Err("nothing was measured: there is nothing to draw".to_owned());
+        }
+        area.fill(&WHITE).map_err(text)?;
+        let mut builder = ChartBuilder::on(&area);
+        builder
+            .caption(&self.title, (FONT, 20))
+            .margin(12)
+            .margin_right(230)
+            .x_label_area_size(48)
+            .y_label_area_size(70);
+        let range = |scale: Scale, values: &mut dyn Iterator<Item = f64>| match scale {
+            Scale::Log => decades(values),
+            Scale::Linear => around(values),
+        };
+        let x = range(self.scales[0], &mut all().map(|p| p.0));
+        let y = range(self.scales[1], &mut all().map(|p| p.1));
+        let (x, y) = (x.0..x.1, y.0..y.1);
+        match self.scales {
+            [Scale::Log, Scale::Log] => {
+                self.paint(&area, builder.build_cartesian_2d(x.log_scale(), y.log_scale()).map_err(text)?)
+            }
+            [Scale::Log, Scale::Linear] => {
+                self.paint(&area, builder.build_cartesian_2d(x.log_scale(), y).map_err(text)?)
+            }
+            [Scale::Linear, Scale::Log] => {
+                self.paint(&area, builder.build_cartesian_2d(x, y.log_scale()).map_err(text)?)
+            }
+            [Scale::Linear, Scale::Linear] => self.paint(&area, builder.build_cartesian_2d(x, y).map_err(text)?),
+        }
+    }
+}
+
+impl Chart {
+    /// Axes, lines and legend.
+    fn paint<B: DrawingBackend, X, Y>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        mut chart: ChartContext<B, Cartesian2d<X, Y>>,
+    ) -> Result<(), String>
+    where
+        X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+        Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    {
+        let text = |why: DrawingAreaErrorKind<B::ErrorType>| why.to_string();
+        let label = |scale: Scale| move |x: &f64| if scale == Scale::Log { format!("{x:.0e}") } else { round(*x) };
+        chart
+            .configure_mesh()
+            .bold_line_style(RGBColor(205, 205, 205))
+            .light_line_style(RGBColor(240, 240, 240))
+            .x_desc(&self.x)
+            .y_desc(&self.y)
+            .x_label_formatter(&label(self.scales[0]))
+            .y_label_formatter(&label(self.scales[1]))
+            .label_style((FONT, 15))
+            .axis_desc_style((FONT, 17))
+            .draw()
+            .map_err(text)?;
+        for (k, line) in self.lines.iter().enumerate() {
+            let colour = COLOURS[line.colour % COLOURS.len()];
+            let style = ShapeStyle::from(colour).stroke_width(2);
+            chart.draw_series(LineSeries::new(line.points.clone(), style)).map_err(text)?;
+            for &point in &line.points {
+                mark(area, line.marker, chart.backend_coord(&point), colour).map_err(text)?;
+            }
+            let at = (SIZE.0 as i32 - 213, 60 + 20 * k as i32);
+            mark(area, line.marker, at, colour).map_err(text)?;
+            let style = (FONT, 14).into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
+            area.draw(&Text::new(line.name.clone(), (at.0 + 14, at.1), style)).map_err(text)?;
+        }
+        area.present().map_err(text)
+    }
+}
+
+/// A range around numbers, with a margin of a twentieth, that is not empty.
+fn around(values: &mut dyn Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let margin = if high > low { 0.05 * (high - low) } else { 0.05 * high.abs().max(1e-12) };
+    (low - margin, high + margin)
+}
+
+/// A number of a linear axis, without the last digits of its rounding.
+fn round(x: f64) -> String {
+    let digits = format!("{x:.3e}").parse::<f64>().unwrap_or(x);
+    if digits != 0.0 && digits.abs() < 1e-3 { format!("{digits:e}") } else { digits.to_string() }
+}
+
+/// One point, in pixels.
+fn mark<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    marker: Marker,
+    at: (i32, i32),
+    colour: RGBColor,
+) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+    let full = colour.filled();
+    match marker {
+        Marker::Bare => Ok(()),
+        Marker::Circle => area.draw(&Circle::new(at, 4, full)),
+        Marker::Triangle => area.draw(&TriangleMarker::new(at, 6, full)),
+        Marker::Square => area.draw(&square(at, full)),
+        Marker::Cross => area.draw(&Cross::new(at, 5, ShapeStyle::from(colour).stroke_width(2))),
+    }
+}

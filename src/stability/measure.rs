@@ -1,0 +1,222 @@
+//! The numbers of a case.
+
+use super::angles::{self, At};
+use super::assemble::{Assembler, Differences, Operator};
+use super::energy::Energy;
+use super::norms;
+use super::operator::Rate;
+use super::{Problem, Setup};
+use crate::error::{Error, Result};
+use crate::scene::{Method, Scene};
+use crate::step::cfl;
+use serde_json::Value;
+
+/// A step is stable if its spectral radius is at most 1 and this; ADER of degree 4 and more grows by more at any step.
+const TOLERANCE: f64 = 1e-6;
+/// Tangents of an unloaded law have eigenvalues 0 to the rounding of their differences, over rho0 c_p^2.
+const DEFINITE: f64 = 1e-9;
+/// The limit is found to this part.
+const RESOLUTION: f64 = 1e-3;
+/// Most unknowns of a body: the matrix is full, and its eigenvalues take minutes.
+const MOST_UNKNOWNS: usize = 4000;
+
+/// What is asked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Questions {
+    /// Bloch angles a direction.
+    pub angles: usize,
+    /// Whether the largest stable step is looked for.
+    pub limit: bool,
+    /// Whether the growth of the largest number over some steps is computed.
+    pub norms: bool,
+}
+
+/// The settings of a case, by their names in scenes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Names {
+    /// Method.
+    pub method: String,
+    /// N.
+    pub degree: usize,
+    /// Layout of the points, where the method has points.
+    pub layout: Option<String>,
+    /// Flux.
+    pub flux: String,
+    /// Control of the curl.
+    pub curl: String,
+}
+
+impl Names {
+    fn of(scene: &Scene) -> Self {
+        let points = scene.scheme.method == Method::AderDgmpm;
+        Self {
+            method: scene.scheme.method.name().to_owned(),
+            degree: scene.scheme.degree,
+            layout: points.then(|| tag(&scene.materials[0].cloud.layout)),
+            flux: scene.scheme.flux.name().to_owned(),
+            curl: tag(&scene.curl),
+        }
+    }
+}
+
+/// The name of a choice as it is written in scenes.
+fn tag(choice: &impl serde::Serialize) -> String {
+    fn of(value: &Value) -> String {
+        match value {
+            Value::Object(map) => match map.iter().next() {
+                Some((group, inner)) if ["in-cells", "body"].contains(&&group[..]) => of(inner),
+                Some((name, _)) => name.clone(),
+                None => String::new(),
+            },
+            Value::String(name) => name.clone(),
+            other => other.to_string(),
+        }
+    }
+    serde_json::to_value(choice).map_or(String::new(), |value| of(&value))
+}
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// The settings.
+    pub names: Names,
+    /// Cells of the body; of a patch those of its unit.
+    pub cells: usize,
+    /// Rows of the matrix.
+    pub unknowns: usize,
+    /// dt c/h with the largest speed c of the state; none in the limit dt -> 0.
+    pub courant: Option<f64>,
+    /// Largest growth rate, c_p/h with c_p of the unloaded law: ln(spectral radius) / dt, or the largest real part.
+    pub growth: f64,
+    /// Spectral radius of a step.
+    pub radius: Option<f64>,
+    /// The angles of the largest growth of a patch.
+    pub theta: Option<[f64; 2]>,
+    /// The largest stable dt c/h, 0 where none is found.
+    pub limit: Option<f64>,
+    /// The most that energy can gain, c_p/h, see [`super::Energy`].
+    pub energy: f64,
+    /// Whether the energy product is definite or at least not negative.
+    pub definite: bool,
+    /// Growth of the largest number over 1, 10 and 100 steps.
+    pub norms: Option<[f64; 3]>,
+    /// What entries of the matrix are off by, c_p/h.
+    pub noise: f64,
+}
+
+/// Builds and measures a case.
+///
+/// # Errors
+/// Bad input; a body that is too large.
+pub fn measure(setup: &Setup, questions: Questions) -> Result<Measured> {
+    let problem = setup.build()?;
+    let cells = problem.columns().len();
+    let unknowns = cells * problem.per_cell();
+    if unknowns > MOST_UNKNOWNS {
+        let most = MOST_UNKNOWNS / problem.per_cell();
+        let what = format!("{cells} cells of {} unknowns; at most {most} at this degree", problem.per_cell());
+        return Err(Error::input(
+            what,
+            "give a coarser or shorter body (eigenvalues of a full matrix), or a lower degree",
+        ));
+    }
+    let operator = if setup.semi_discrete { Operator::SemiDiscrete } else { Operator::Step(problem.courant) };
+    let how = Assembler::new(&problem).best(operator)?;
+    let rate = Rate::new(&problem, &how, operator)?;
+    let At { growth, theta } = angles::worst(&rate, questions.angles)?;
+    let limit = match questions.limit && !setup.semi_discrete {
+        true => Some(Limit { problem: &problem, how, angles: questions.angles }.find(theta)?),
+        false => None,
+    };
+    let energy = Energy::new(&problem)?;
+    let mut around = angles::grid(questions.angles);
+    around.push(theta);
+    let (gain, definite) = (energy.largest(&rate, &around)?, energy.lowest > -DEFINITE);
+    let norms = if questions.norms { norms::norms(&rate, questions.angles) } else { None };
+    // Rates in c_p/h of the unloaded law, steps in c/h of the state.
+    let unit = problem.c / problem.reference;
+    let courant = rate.courant;
+    let radius = courant.map(|dt| (growth * dt).exp());
+    let theta = rate.periodic.then_some(theta);
+    let names = Names::of(&problem.scene);
+    Ok(Measured {
+        names,
+        cells,
+        unknowns,
+        courant,
+        growth: growth * unit,
+        radius,
+        theta,
+        limit,
+        energy: gain * unit,
+        definite,
+        norms,
+        noise: how.noise * unit,
+    })
+}
+
+/// The search for the largest stable step.
+struct Limit<'a> {
+    problem: &'a Problem,
+    how: Differences,
+    angles: usize,
+}
+
+impl Limit<'_> {
+    /// dt c/h, 0 where a twentieth of the known limit is unstable, too.
+    fn find(&self, hint: [f64; 2]) -> Result<f64> {
+        let mut hint = Some(hint);
+        let known = if self.problem.known_limit > 0.0 { self.problem.known_limit } else { 0.1 };
+        let (mut stable, mut unstable) = (0.0, 0.0);
+        // Outwards from the known limit.
+        let mut at = known;
+        while stable == 0.0 || unstable == 0.0 {
+            if self.is_stable(at, &mut hint)? {
+                stable = at;
+                at *= 1.1;
+            } else {
+                unstable = at;
+                at *= if at > 0.8 * known { 0.9 } else { 0.5 };
+            }
+            if unstable > 0.0 && unstable < 0.05 * known || stable > 20.0 * known {
+                return Ok(stable);
+            }
+        }
+        loop {
+            while unstable / stable > 1.0 + RESOLUTION {
+                let middle = (stable * unstable).sqrt();
+                if self.is_stable(middle, &mut hint)? { stable = middle } else { unstable = middle }
+            }
+            // The angles of the grid are stable; those between may be worse.
+            let rate = Rate::new(self.problem, &self.how, Operator::Step(stable))?;
+            let worst = angles::worst(&rate, self.angles)?;
+            if worst.growth <= self.bound(stable) {
+                return Ok(stable);
+            }
+            hint = Some(worst.theta);
+            (stable, unstable) = (0.99 * stable, stable);
+            while !self.is_stable(stable, &mut hint)? {
+                (stable, unstable) = (0.99 * stable, stable);
+                if stable < 0.05 * known {
+                    return Ok(0.0);
+                }
+            }
+        }
+    }
+
+    /// The growth that counts as none, c/h.
+    fn bound(&self, courant: f64) -> f64 {
+        let scheme = &self.problem.scheme;
+        let known = cfl::growth(&scheme.method, scheme.operators.degree);
+        known.map_or(TOLERANCE, |growth| 2.0 * growth).ln_1p() / courant
+    }
+
+    fn is_stable(&self, courant: f64, hint: &mut Option<[f64; 2]>) -> Result<bool> {
+        let rate = Rate::new(self.problem, &self.how, Operator::Step(courant));
+        // Beyond the limit numbers may leave what can be represented.
+        let Ok(rate) = rate else { return Ok(false) };
+        let found = angles::above(&rate, self.angles, self.bound(courant), *hint)?;
+        *hint = found.or(*hint);
+        Ok(found.is_none())
+    }
+}
