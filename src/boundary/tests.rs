@@ -6,7 +6,7 @@ use crate::tensor;
 
 const N: [f64; 2] = [0.6, 0.8];
 const AT: FacePoint =
-    FacePoint { x: [0.3, 0.4], normal: N, medium: Medium { density: 1.3, shear_impedance: 1.0, share: 1.0 } };
+    FacePoint { x: [0.3, 0.4], normal: N, medium: Medium { density: 1.3, shear_admittance: 1.0, share: 1.0 } };
 const NOW: [TimeNode; 1] = [TimeNode { time: 0.0, weight: 1.0 }];
 
 fn trace(f: [f64; 4], v: [f64; 2]) -> Trace<f64> {

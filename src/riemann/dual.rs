@@ -29,20 +29,52 @@ pub struct Dual;
 const ROTATION: f64 = 0.25;
 const DEVIATOR: f64 = 0.125;
 
+/// The star state of two sides, as jumps.
+struct Star<L> {
+    /// v* - mean v.
+    v: [L; 2],
+    /// t*.
+    t: [L; 2],
+    /// v^+ - v^-.
+    jump: [L; 2],
+    /// What is added to the rows of F.
+    add: [L; 4],
+}
+
 impl Dual {
     /// What is added to the rows of F: -c_p/4 r e - c_d/2 D, `c` being c_p.
     #[inline(always)]
     pub fn incompatible<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], c: L, medium: &Medium<L>) -> [L; 4] {
-        let (half, m, p) = (L::splat(0.5), minus.f, plus.f);
-        let f = [half * (m[0] + p[0]), half * (m[1] + p[1]), half * (m[2] + p[2]), half * (m[3] + p[3])];
+        let f = Self::sum(minus, plus);
+        Self::jumps(minus, plus, f, n, c, L::splat(1.0) / tensor::contract(f, f), medium)
+    }
+
+    /// Twice the mean F.
+    #[inline(always)]
+    fn sum<L: Lane>(minus: &Trace<L>, plus: &Trace<L>) -> [L; 4] {
+        let (m, p) = (minus.f, plus.f);
+        [m[0] + p[0], m[1] + p[1], m[2] + p[2], m[3] + p[3]]
+    }
+
+    /// -c_p/4 r e - c_d/2 D from `f` = 2 F and `inverse` = 1/|2 F|^2: a common factor falls out of r e and q (g : `[F]`) g.
+    #[inline(always)]
+    fn jumps<L: Lane>(
+        minus: &Trace<L>,
+        plus: &Trace<L>,
+        f: [L; 4],
+        n: [L; 2],
+        c: L,
+        inverse: L,
+        medium: &Medium<L>,
+    ) -> [L; 4] {
+        let (m, p) = (minus.f, plus.f);
         let j = [p[0] - m[0], p[1] - m[1], p[2] - m[2], p[3] - m[3]];
         let (e, g) = ([-f[2], -f[3], f[0], f[1]], tensor::cofactor(f));
-        let inverse = L::splat(1.0) / tensor::contract(f, f);
-        let (turn, trace) = (inverse * tensor::contract(e, j), inverse * tensor::contract(g, j));
+        // Four times (mean t).(F N).
         let pushed = tensor::dot([minus.t[0] + plus.t[0], minus.t[1] + plus.t[1]], tensor::times(f, n));
-        let s = (L::splat(-0.5) * pushed).max(L::zero());
-        let deviator = L::splat(-DEVIATOR) * s / medium.shear_impedance;
-        let (turn, trace) = (turn * (L::splat(-ROTATION) * c - deviator), -(trace * deviator));
+        let deviator = pushed.min(L::zero()) * (L::splat(0.25 * DEVIATOR) * medium.shear_admittance);
+        let turn = (inverse * tensor::contract(e, j)) * (L::splat(-ROTATION) * c - deviator);
+        let trace = -(inverse * tensor::contract(g, j)) * deviator;
         let mut out = [L::zero(); 4];
         for k in 0..4 {
             out[k] = turn.mul_add(e[k], trace.mul_add(g[k], deviator * j[k]));
@@ -50,18 +82,23 @@ impl Dual {
         out
     }
 
-    /// v* - v^- and t*.
     #[inline(always)]
-    fn star<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, z: L, share: L) -> ([L; 2], [L; 2]) {
+    fn star<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> Star<L> {
         let half = L::splat(0.5);
-        let (with_t, with_v) = (half * share / z, half * z);
-        let (mut v, mut t) = ([L::zero(); 2], [L::zero(); 2]);
-        for i in 0..2 {
-            let jump = plus.v[i] - minus.v[i];
-            v[i] = with_t.mul_add(plus.t[i] - minus.t[i], half * jump);
-            t[i] = with_v.mul_add(jump, half * (minus.t[i] + plus.t[i]));
-        }
-        (v, t)
+        let c = minus.c[0].max(plus.c[0]);
+        let (z, f) = (medium.density * c, Self::sum(minus, plus));
+        // One division for 1/z and 1/|2 F|^2.
+        let square = tensor::contract(f, f);
+        let inverse = L::splat(1.0) / (z * square);
+        let add = Self::jumps(minus, plus, f, n, c, inverse * z, medium);
+        let (with_t, with_v) = (half * medium.share * (inverse * square), half * z);
+        let jump = [plus.v[0] - minus.v[0], plus.v[1] - minus.v[1]];
+        let v = [with_t * (plus.t[0] - minus.t[0]), with_t * (plus.t[1] - minus.t[1])];
+        let t = [
+            with_v.mul_add(jump[0], half * (minus.t[0] + plus.t[0])),
+            with_v.mul_add(jump[1], half * (minus.t[1] + plus.t[1])),
+        ];
+        Star { v, t, jump, add }
     }
 }
 
@@ -70,18 +107,14 @@ impl Riemann for Dual {
 
     #[inline(always)]
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6] {
-        let c = minus.c[0].max(plus.c[0]);
-        let z = medium.density * c;
-        let with_t = L::splat(0.5) * medium.share / z;
-        let (_, t) = Self::star(minus, plus, z, medium.share);
-        let add = Self::incompatible(minus, plus, n, c, medium);
+        let star = Self::star(minus, plus, n, medium);
         let mut flux = [L::zero(); 6];
         for i in 0..2 {
             // Not from v^- on: the sides must agree to the bit.
-            let v = with_t.mul_add(plus.t[i] - minus.t[i], L::splat(0.5) * (minus.v[i] + plus.v[i]));
-            flux[2 * i] = add[2 * i] - v * n[0];
-            flux[2 * i + 1] = add[2 * i + 1] - v * n[1];
-            flux[4 + i] = -t[i];
+            let v = L::splat(0.5).mul_add(minus.v[i] + plus.v[i], star.v[i]);
+            flux[2 * i] = star.add[2 * i] - v * n[0];
+            flux[2 * i + 1] = star.add[2 * i + 1] - v * n[1];
+            flux[4 + i] = -star.t[i];
         }
         flux
     }
@@ -89,14 +122,13 @@ impl Riemann for Dual {
     /// In jumps alone.
     #[inline(always)]
     fn lifted<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>, scale: L) -> [L; 6] {
-        let c = minus.c[0].max(plus.c[0]);
-        let (v, t) = Self::star(minus, plus, medium.density * c, medium.share);
-        let add = Self::incompatible(minus, plus, n, c, medium);
+        let star = Self::star(minus, plus, n, medium);
         let mut out = [L::zero(); 6];
         for i in 0..2 {
-            out[2 * i] = scale * (add[2 * i] - v[i] * n[0]);
-            out[2 * i + 1] = scale * (add[2 * i + 1] - v[i] * n[1]);
-            out[4 + i] = -(scale * t[i]);
+            let v = L::splat(0.5).mul_add(star.jump[i], star.v[i]);
+            out[2 * i] = scale * (star.add[2 * i] - v * n[0]);
+            out[2 * i + 1] = scale * (star.add[2 * i + 1] - v * n[1]);
+            out[4 + i] = -(scale * star.t[i]);
         }
         out
     }

@@ -34,8 +34,8 @@ pub struct Trace<L> {
 pub struct Medium<L> {
     /// rho0, kg/m^3.
     pub density: L,
-    /// rho0 c_s of the law at F = 1, kg/(m^2 s).
-    pub shear_impedance: L,
+    /// 1/(rho0 c_s) of the law at F = 1, m^2 s/kg.
+    pub shear_admittance: L,
     /// theta, the weight of the jump of traction in v* where a flux has one ([`Dual`]).
     pub share: L,
 }
@@ -50,15 +50,15 @@ impl Medium<f64> {
     /// That of a law in a scheme of degree N.
     pub fn new(law: &Law, degree: usize) -> Self {
         let share = SHARE[degree.min(SHARE.len() - 1)];
-        let (density, shear_impedance) = (law.density(), (law.density() * law.shear_modulus()).sqrt());
-        Self { density, shear_impedance, share }
+        let (density, shear_admittance) = (law.density(), 1.0 / (law.density() * law.shear_modulus()).sqrt());
+        Self { density, shear_admittance, share }
     }
 
     /// In all lanes.
     #[inline(always)]
     pub fn splat<L: Lane>(&self) -> Medium<L> {
-        let [density, shear_impedance, share] = [self.density, self.shear_impedance, self.share];
-        Medium { density: L::splat(density), shear_impedance: L::splat(shear_impedance), share: L::splat(share) }
+        let [density, shear_admittance, share] = [self.density, self.shear_admittance, self.share];
+        Medium { density: L::splat(density), shear_admittance: L::splat(shear_admittance), share: L::splat(share) }
     }
 }
 
