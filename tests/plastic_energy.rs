@@ -138,12 +138,12 @@ fn the_program_says_where_histories_stand_and_strict_has_nothing_to_refuse() {
     assert!(out.contains("10 nodes") && !out.contains("cannot carry") && err.is_empty(), "{out}{err}");
     // The default layout is on the nodes: nothing to say.
     let [out, err] = said(&dgmpm(&folder, "preprocess bar.toml --strict --out b.h5", &[]));
-    assert!(out.contains("10 nodes") && !out.contains("memory") && err.is_empty(), "{out}{err}");
+    assert!(out.contains("10 nodes") && !out.contains("has memory") && err.is_empty(), "{out}{err}");
     // At the points by name: Lambda of the paper's lattice, 26.
     for key in ["cloud.histories=points", "material.0.histories=points"] {
         let [out, err] = said(&dgmpm(&folder, "preprocess bar.toml --out c.h5 --force", &[paper, key]));
         assert!(err.contains("makes energy in plastic flow (face Lebesgue constant 26"), "{out}{err}");
-        assert!(out.contains("10 lattice") && !out.contains("memory"), "{out}{err}");
+        assert!(out.contains("10 lattice") && !out.contains("has memory"), "{out}{err}");
         let [_, err] = said(&dgmpm(&folder, "preprocess bar.toml --out c.h5 --force", &["cloud.layout=gauss", key]));
         assert!(err.is_empty(), "{err}");
     }

@@ -229,7 +229,10 @@ fn the_same_mesh_of_a_stopped_run_gives_the_bits_of_a_run_that_went_on() {
 fn internal_variables_are_bit_for_bit_what_they_were_at_the_points_that_are_kept() {
     let bench = Bench::new();
     let plastic = SCENE.replace("law = \"neo-hookean\"", "law = \"j2\"\nyield_stress = 4e8\nhardening = 1e10");
-    bench.write("case.toml", format!("{plastic}[cloud]\nlayout = \"jitter\"\nper_direction = 5\n"));
+    bench.write(
+        "case.toml",
+        format!("{plastic}[cloud]\nlayout = \"jitter\"\nper_direction = 5\nhistories = \"points\"\n"),
+    );
     bench.run("run case.toml --out first");
     let mut new = rectangle([1.0, 0.5], [5, 2]).unwrap();
     new.nodes.iter_mut().enumerate().for_each(|(node, x)| x[0] = [0.0, 0.25, 0.4, 0.5, 0.75, 1.0][node % 6]);
