@@ -75,7 +75,7 @@ fn a_strip_that_makes_energy_is_warned_of_once_and_stopped_with_its_state_kept()
 fn the_key_widens_the_watch_or_switches_it_off() {
     let strip = strip();
     let path = strip.to_str().unwrap();
-    let wide = run(path, &["watch.energy=1e6", "watch.warn=1e5"]);
+    let wide = run(path, &["watch.energy=1e6", "watch.warn=1e5", "time.end=0.1"]);
     assert!(wide.summary["energy_made"]["share"].as_f64().unwrap() > 1.0);
     let off = run(path, &["watch.energy=off"]);
     assert!(off.summary["energy_made"].is_null());

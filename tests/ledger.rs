@@ -52,7 +52,7 @@ fn beyond_jumps(outcome: &Outcome) -> f64 {
 #[test]
 fn what_jumps_do_not_explain_falls_under_refinement_with_the_order_of_the_scheme() {
     let scene = scene("box", "neo-hookean", "size = [1.0, 1.0], cells = [8, 8]", [WALL; 4], BOX);
-    let orders = [[2.73, 2.79, 4.65], [2.73, 2.81, 4.73], [2.77, 5.04, 6.98]];
+    let orders = [[2.49, 2.89, 4.37], [2.49, 2.89, 4.37], [3.12, 4.69, 5.05]];
     for (method, orders) in METHODS.into_iter().zip(orders) {
         for (degree, measured) in (1..=3).zip(orders) {
             let unexplained = |cells: usize| {
@@ -72,13 +72,12 @@ fn what_jumps_do_not_explain_falls_under_refinement_with_the_order_of_the_scheme
     }
 }
 
-/// The paper's impact on 15 x 15 cells until the wave has come back. RK's steps only lose; of ADER's 13 of 520 give, about
-/// one each time the front enters a cell, which its predictor does not see coming. The projection is of first order in what it
-/// removes and may give: it does in its first steps, and with RK in 51 of 380; it takes far more. Measured, of E(0) for
-/// ADER-DGMPM and RK: faces .0166, .0134, boundary .0084, .0098, projection 6.7e-4, 1.8e-4; given, of what was lost: faces .016, 0,
-/// boundary .020, 0, projection .004, .089.
+/// The paper's impact on 15 x 15 cells until the wave has come back. RK's steps only lose; of ADER's some give, about
+/// one each time the front enters a cell, which its predictor does not see coming. The control of the curl moves next to nothing.
+/// Measured, of E(0) for ADER-DGMPM: faces .0187, boundary .0081, control 8e-6; given, of what was lost: faces .026,
+/// boundary .026.
 #[test]
-fn in_the_impact_steps_dissipate_and_the_projection_takes_more_than_it_gives() {
+fn in_the_impact_steps_dissipate_and_the_control_of_the_curl_moves_next_to_nothing() {
     for method in METHODS {
         let sets = [
             "mesh.rectangle={size=[3.0,3.0],cells=[15,15]}",
@@ -91,15 +90,16 @@ fn in_the_impact_steps_dissipate_and_the_projection_takes_more_than_it_gives() {
         let total = ledger.column("total_energy");
         let mut all = 0.0;
         // Twice the measured shares.
-        let of_step = if method == "rk-dgfem" { 0.0 } else { 0.04 };
-        for (cause, may_give) in [("flux", of_step), ("boundary", of_step), ("curl", 0.18)] {
+        let of_step = if method == "rk-dgfem" { 0.0 } else { 0.052 };
+        for (cause, may_give) in [("flux", of_step), ("boundary", of_step), ("curl", f64::INFINITY)] {
             let lost = ledger.column(&format!("{cause}_dissipation"));
             let end = *lost.last().unwrap();
             println!("{method} {cause}: {:.4e} of E(0)", end / total[0]);
-            assert!(lost.len() > 300 && end > 1e-4 * total[0], "{method} {cause}");
+            let little = cause == "curl" && end.abs() < 1e-4 * total[0];
+            assert!(lost.len() > 300 && (little || end > 1e-4 * total[0]), "{method} {cause}: {end:e}");
             let given: f64 = lost.windows(2).map(|pair| (pair[0] - pair[1]).max(0.0)).sum();
             println!("{method} {cause}: gave {:.4e}", given / end);
-            assert!(given <= may_give * end, "{method} {cause}: {given:e} of {end:e}");
+            assert!(cause == "curl" || given <= may_give * end, "{method} {cause}: {given:e} of {end:e}");
             all += end;
         }
         let remainder = *ledger.column("remainder").last().unwrap();
@@ -166,14 +166,14 @@ fn the_work_of_gravity_is_weight_times_displacement_of_the_centre() {
 }
 
 /// A free square spins by 400 m/s at its edges, about one turn. Linear momentum is kept to rounding by all methods.
-/// Angular momentum is not in (F, p): its change is measured as 3.9e-5, 4.9e-6 (ADER, 4 x 4 and 8 x 8 cells, third
-/// order) and 1.3e-8, 9.3e-10 (RK4). The bounds are twice that.
+/// Angular momentum is not in (F, p): its change is measured as 3.8e-5, 5.1e-6 (ADER-DGMPM, 4 x 4 and 8 x 8 cells),
+/// 2.3e-5, 4.5e-6 (ADER-DGFEM) and 1.2e-5, 5.2e-7 (RK4; with rusanov 1.3e-8, 9.3e-10). The bounds are twice that.
 #[test]
 fn a_free_spinning_square_keeps_its_momenta() {
     let more = "[initial]\nvelocity = [\"-800*(y-0.5)\", \"800*(x-0.5)\"]\n\
                 [scheme]\nmethod = \"rk-dgfem\"\ndegree = 2\n[time]\nend = 7.854e-3";
     let scene = scene("spin", "neo-hookean", "size = [1.0, 1.0], cells = [4, 4]", [FREE; 4], more);
-    for (method, bounds) in METHODS.into_iter().zip([[8e-5, 1e-5], [8e-5, 1e-5], [2.7e-8, 2e-9]]) {
+    for (method, bounds) in METHODS.into_iter().zip([[8e-5, 1e-5], [8e-5, 1e-5], [2.5e-5, 1.1e-6]]) {
         let changes = [4, 8].map(|cells| {
             let set = format!("mesh.rectangle.cells=[{cells},{cells}]");
             let outcome = of(&scene, method, 2, &[&set, "output.0.every_steps=100"]);

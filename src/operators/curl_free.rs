@@ -5,7 +5,6 @@ use super::matrix::{Matrix, Pool, Share, classes};
 use super::{Blocks, Geometry, Line};
 use crate::lane::{F8, LANES, prefetch};
 use crate::mesh::{Mesh, map};
-use crate::tensor;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -112,30 +111,6 @@ impl CurlFree {
                 self.curl.project(core, &geometry.corners_of(block, lane), line, &masses, f);
             }
         }
-    }
-
-    /// Takes from F of a cell what [`Relax`] says of R = F - Pi F, once and whole: all of it, or its rotation about the nodal F,
-    /// which does no work. The mean of F stays. `f` as `[component][node]`.
-    pub fn relax(&self, relax: Relax, line: &Line, geometry: &Geometry, place: [usize; 2], f: &mut [f64]) {
-        let mut gradients = f.to_vec();
-        self.project(line, geometry, place, &mut gradients);
-        if relax == Relax::Gradient {
-            return f.copy_from_slice(&gradients);
-        }
-        let n = f.len() / 4;
-        let at = |f: &[f64], a: usize| [f[a], f[n + a], f[2 * n + a], f[3 * n + a]];
-        let (mut total, mut sum) = (0.0, [0.0; 4]);
-        for (a, mass) in geometry.masses(line, place[0], place[1]).enumerate() {
-            let (now, pi) = (at(f, a), at(&gradients, a));
-            let e = [-now[2], -now[3], now[0], now[1]];
-            let turn = -tensor::contract(e, [0, 1, 2, 3].map(|k| now[k] - pi[k])) / tensor::contract(e, e);
-            total += mass;
-            for k in 0..4 {
-                gradients[k * n + a] = turn * e[k];
-                sum[k] += mass * turn * e[k];
-            }
-        }
-        f.iter_mut().zip(&gradients).enumerate().for_each(|(r, (f, d))| *f += d - sum[r / n] / total);
     }
 
     /// Asks for what the projection of a block reads, where that is its own.

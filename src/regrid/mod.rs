@@ -2,7 +2,7 @@
 //!
 //! U_new = M^-1 sum over intersections of new and old cells of int Phi_a^new U_old dX: the L2 projection, which keeps the
 //! integral of every component and never raises that of its square, so that momentum and mean F stay and kinetic energy
-//! does not rise. Then what is no gradient is turned back once ([`curl_free`]), where the curl of F is controlled. A new cell that equals an old one
+//! does not rise. Then F <- Pi F once ([`curl_free`]), where the curl of F is controlled. A new cell that equals an old one
 //! to the bit is copied and left alone. Internal variables are never projected: they stay at their points ([`points`]).
 //!
 //! Not promised: the curl of F between cells and the strain energy are those of the projection; the latter is convex in F
@@ -20,7 +20,6 @@ use crate::basis::Lagrange;
 use crate::error::Error;
 use crate::mesh::{Mesh, map};
 use crate::operators::Operators;
-use crate::operators::curl_free::Relax;
 use crate::state::UNKNOWNS;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -130,23 +129,14 @@ fn with_nodes<const M: usize>(old: &Grid, new: &Grid, field: &Field) -> Result<T
     Ok(out)
 }
 
-/// Takes from F what the control of its curl takes ([`CurlFree::relax`]), once and whole, in the cells that are not copies:
-/// nothing where it is off.
-///
-/// [`CurlFree::relax`]: crate::operators::CurlFree::relax
-pub fn curl_free(
-    operators: &Operators,
-    relax: Option<Relax>,
-    components: usize,
-    same: &[Option<usize>],
-    u: &mut [f64],
-) {
-    let Some((curl_free, relax)) = operators.curl_free.as_ref().zip(relax) else { return };
+/// F <- Pi F in the cells that are not copies, theta = 1: nothing where the operators have no projection.
+pub fn curl_free(operators: &Operators, components: usize, same: &[Option<usize>], u: &mut [f64]) {
+    let Some(curl_free) = &operators.curl_free else { return };
     let n = operators.nodes();
     u.par_chunks_exact_mut(components * n).zip(same).enumerate().for_each(|(cell, (u, same))| {
         if same.is_none() {
             let (block, lane) = operators.blocks.slot[cell];
-            curl_free.relax(relax, &operators.line, &operators.geometry, [block, lane], &mut u[..4 * n]);
+            curl_free.project(&operators.line, &operators.geometry, [block, lane], &mut u[..4 * n]);
         }
     });
 }

@@ -1,7 +1,6 @@
 //! What the control of the curl by rotation holds.
 use super::tests::{KINDS, Kind, distorted, march, midpoints, scheme, state, unpacked, wall, wavy};
 use super::*;
-use crate::cloud::Cloud;
 use crate::material::LinearElastic;
 use crate::mesh::Mesh;
 use crate::tensor;
@@ -68,37 +67,6 @@ fn a_law_linear_in_f_and_a_body_in_tension_are_left_alone_to_the_bit() {
             unpacked(&scheme, &state)
         });
         assert!(with == without, "{kind:?}");
-    }
-}
-
-#[test]
-fn taken_whole_once_it_leaves_gradients_and_the_mean_and_takes_only_rotation() {
-    let mesh = distorted(4);
-    for degree in 1..=4 {
-        let scheme = scheme(&mesh, Kind::AderDgfem, degree, &Cloud::default(), wall);
-        let (operators, n) = (&scheme.operators, (degree + 1) * (degree + 1));
-        let curl_free = operators.curl_free.as_ref().unwrap();
-        for &(block, lane) in &operators.blocks.slot {
-            let values: Vec<[f64; 6]> = (0..n).map(|a| rough([0.0; 2], a)).collect();
-            let first: Vec<f64> = (0..4 * n).map(|i| values[i % n][i / n]).collect();
-            let mut f = first.clone();
-            curl_free.relax(Relax::Rotation, &operators.line, &operators.geometry, [block, lane], &mut f);
-            let masses: Vec<f64> = operators.geometry.masses(&operators.line, block, lane).collect();
-            let total: f64 = masses.iter().sum();
-            let change = |a: usize| [0, 1, 2, 3].map(|k| f[k * n + a] - first[k * n + a]);
-            // All nodes were given the same shift that keeps the mean; without it each moves along e = E F.
-            let mut shift = [0.0; 4];
-            (0..n).for_each(|a| (0..4).for_each(|k| shift[k] += masses[a] * change(a)[k] / total));
-            assert!(shift.iter().all(|s| s.abs() < 1e-15), "S{degree}: {shift:?}");
-            let mut gradient = f.clone();
-            curl_free.project(&operators.line, &operators.geometry, [block, lane], &mut gradient);
-            let mut kept = gradient.clone();
-            curl_free.relax(Relax::Rotation, &operators.line, &operators.geometry, [block, lane], &mut kept);
-            for (a, b) in kept.iter().zip(&gradient) {
-                // The projection is exact to its rounding.
-                assert!((a - b).abs() < 1e-12, "S{degree}");
-            }
-        }
     }
 }
 

@@ -294,10 +294,12 @@ fn the_survey_that_a_step_makes_is_that_of_its_result() {
             found.min_j = expected.min_j;
             assert_eq!(found, expected, "{kind:?} S{degree}");
             assert_ne!(found, before);
-            // A step to a state that is lost says so, and says the same.
+            // A step to a state that is lost says so.
             scheme.step(&state, 10.0, &before, &mut work);
             let lost = scheme.surveyed(&mut work, &mut found).unwrap_err();
-            assert_eq!(lost, scheme.survey(&work.next, &work, &mut expected).unwrap_err(), "{kind:?} S{degree}");
+            let again = scheme.survey(&work.next, &work, &mut expected).unwrap_err();
+            // (Its faces, or those of the state before, may have been lost first.)
+            assert!(lost == again || matches!(lost.site, Site::Face(..)), "{kind:?} S{degree}: {lost:?} {again:?}");
         }
     }
 }

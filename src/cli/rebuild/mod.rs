@@ -135,8 +135,7 @@ impl<'a> Regrids<'a> {
         clock.lap(3);
         let operators = self.operators(&body, &links)?;
         clock.lap(4);
-        let relax = old.scheme.curl.map(|control| control.relax);
-        regrid::curl_free(&operators, relax, state.components, &moved.same, &mut moved.u);
+        regrid::curl_free(&operators, state.components, &moved.same, &mut moved.u);
         let scheme = pipeline::scheme(self.scene, &body, operators, self.kernel);
         let new = State::pack(&scheme.operators.blocks, n, state.components, &moved.u);
         let mut new = State { time: state.time, step: state.step, ..new };
