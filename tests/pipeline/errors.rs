@@ -48,10 +48,7 @@ fn a_state_that_is_sick_only_between_its_nodes_is_bad_input_too() {
             .stderr,
     )
     .unwrap();
-    assert!(
-        message.contains("the initial state is lost: J = ") && message.contains("at material point"),
-        "{message}"
-    );
+    assert!(message.contains("the initial state is lost: J = ") && message.contains("at material point"), "{message}");
 }
 
 #[test]
