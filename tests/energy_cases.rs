@@ -69,7 +69,7 @@ fn strip(law: &str, poisson: f64, thick: usize) -> PathBuf {
 }
 
 /// The largest energy, that in the middle and that at the end over the start, after of 88 h/c and more: what grows by .02 c/h, as the slowest of LCF's modes
-/// does, is seen in the second half, where damping has taken the rest: LCF's energy rises there by 17 %.
+/// does, is seen in the second half, where damping has taken the rest: LCF's energy rises there by 21 %.
 fn falls(outcome: &Outcome) -> [f64; 3] {
     let energy = outcome.ledger().column("total_energy");
     let [middle, end] = [energy.len() / 2, energy.len() - 1].map(|k| energy[k] / energy[0]);
@@ -97,7 +97,7 @@ fn noise_in_a_free_strip_one_and_two_cells_thick_never_grows() {
     }
 }
 
-/// So that the test above can fail: measured .213 in the middle, .25 at the end.
+/// So that the test above can fail: measured .177 of the start in the middle, .216 at the end.
 #[test]
 fn noise_in_the_free_strip_grows_under_lcf() {
     let outcome = of(&strip("neo-hookean", 0.3, 1), "ader-dgmpm", 2, &["time.end=1.5e-2", "curl.control=lcf"]);
@@ -250,7 +250,7 @@ fn a_clamped_beam_bends_under_its_weight_with_less_energy_than_work() {
     edges[0].1 = "kind = \"clamped\"";
     let rubber = material("neo-hookean", [1.4e6, 0.4, 1000.0], "");
     let scene = scene("bending", &rectangle([0.35, 0.02], [9, 1]), &rubber, &edges, more);
-    for method in ["ader-dgmpm"] {
+    for method in &METHODS[..1] {
         let outcome = of(&scene, method, 3, &["output.0.every_steps=50"]);
         let ledger = outcome.ledger();
         let (energy, work) = (ledger.column("total_energy"), ledger.column("source_work"));

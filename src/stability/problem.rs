@@ -224,7 +224,8 @@ impl Problem {
         })?;
         let h = crate::mesh::map::h_e;
         let h = (0..mesh.cells.len()).map(|cell| h(&mesh.corners(cell))).fold(f64::INFINITY, f64::min);
-        let speeds = scheme.operators.blocks.slot.iter().map(|&(block, lane)| survey.speed[block].fastest.0[lane]).collect();
+        let speeds =
+            scheme.operators.blocks.slot.iter().map(|&(block, lane)| survey.speed[block].fastest.0[lane]).collect();
         let reference = scheme.laws.iter().map(|law| law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0]);
         let reference = reference.fold(0.0, f64::max);
         Ok(Self {
