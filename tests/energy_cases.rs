@@ -78,22 +78,20 @@ fn falls(outcome: &Outcome) -> [f64; 3] {
 
 #[test]
 fn noise_in_a_free_strip_one_and_two_cells_thick_never_grows() {
-    // The linear law moves as the other does in so small a motion: one degree of it.
-    for (law, degrees) in [("neo-hookean", 1..=3), ("linear-elastic", 2..=2)] {
-        for (poisson, end) in [(0.3, "time.end=1.5e-2"), (0.4999, "time.end=4e-4")] {
-            for thick in [1, 2] {
-                let scene = strip(law, poisson, thick);
-                for (method, degree) in METHODS.into_iter().flat_map(|method| degrees.clone().map(move |n| (method, n)))
-                {
-                    let [most, middle, last] = falls(&of(&scene, method, degree, &[end]));
-                    println!("{law} nu {poisson} {thick} thick {method} S{degree}: {most:.9}, {middle:.4}, {last:.4}");
-                    assert!(
-                        most <= NO_GAIN && last < middle,
-                        "{law} {poisson} {thick} {method} S{degree}: {most} {last}"
-                    );
-                }
-            }
-        }
+    // In so small a motion the linear law moves as the other does, and nu changes the speed of the run above all: one case each.
+    let all = METHODS.into_iter().flat_map(|method| (1..=3).map(move |n| ("neo-hookean", 0.3, 1, method, n)));
+    let two = METHODS.into_iter().map(|method| ("neo-hookean", 0.3, 2, method, 2));
+    let others = [
+        ("neo-hookean", 0.4999, 1, "ader-dgmpm", 2),
+        ("neo-hookean", 0.4999, 1, "rk-dgfem", 1),
+        ("linear-elastic", 0.3, 1, "ader-dgmpm", 2),
+        ("linear-elastic", 0.4999, 1, "ader-dgfem", 1),
+    ];
+    for (law, poisson, thick, method, degree) in all.chain(two).chain(others) {
+        let end = if poisson < 0.4 { "time.end=1.5e-2" } else { "time.end=4e-4" };
+        let [most, middle, last] = falls(&of(&strip(law, poisson, thick), method, degree, &[end]));
+        println!("{law} nu {poisson} {thick} thick {method} S{degree}: {most:.9}, {middle:.4}, {last:.4}");
+        assert!(most <= NO_GAIN && last < middle, "{law} {poisson} {thick} {method} S{degree}: {most} {last}");
     }
 }
 
