@@ -25,8 +25,9 @@
 //! 3. time averages of F, v and P at the points, to the grid by chi_p(X_a) (18);
 //! 4. corrector (11)-(14): U_a += dt [ sum_b K_alpha\[a,b\] Flux_alpha(q_b) - faces ], one flux ([`riemann`],
 //!    [`boundary`]) per face point and step, from averaged traces;
-//! 5. LCF: each row of F is relaxed towards gradients of its cell ([`operators::curl_free`]). Without it the discrete
-//!    system is unstable under compression, whatever dt (not in the paper).
+//! 5. control of the curl: rotation and deviator of what in F is no gradient of its cell ([`operators::curl_free`]) are
+//!    relaxed, at a rate tied to compression. Without it the discrete system is unstable there, whatever dt (not in the
+//!    paper; `docs/method.md`).
 //!
 //! ADER-DGFEM has its points at the nodes (chi = Phi); RK-DGFEM replaces 1 to 3 by Runge-Kutta stages. Grid unknowns are
 //! the master copy between steps; internal variables live at the points and are never projected. The step size follows

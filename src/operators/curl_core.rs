@@ -1,4 +1,4 @@
-//! LCF of cells that differ: by the curl in parent coordinates, which is one for all cells, and a small matrix of the cell.
+//! Pi of cells that differ: by the curl in parent coordinates, which is one for all cells, and a small matrix of the cell.
 //!
 //! The components g_k = F_ia dX_a/dxi_k of a gradient are the derivatives of a function in parent coordinates, whatever the
 //! cell is. With K those functionals of g at the nodes that vanish on the gradients of Q_N, and J the Jacobian matrices

@@ -1,4 +1,5 @@
-//! LCF: the locally curl-free projection of the rows of F (design section 5; not in the paper).
+//! Pi: the locally curl-free projection of the rows of F, and what a control takes of F - Pi F (not in the paper;
+//! `docs/method.md`).
 
 use super::curl_core::Curl;
 use super::matrix::{Matrix, Pool, Share, classes};

@@ -6,10 +6,7 @@ use faer::{Mat, c64};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// The numbers of steps.
-pub const STEPS: [usize; 3] = [1, 10, 100];
-
-/// |S^k| for the three numbers of steps, the norm that belongs to the largest number: the largest sum of a row. Of a patch
+/// |S^k| for k = 1, 10 and 100 steps, the norm that belongs to the largest number: the largest sum of a row. Of a patch
 /// the norm of `count` x `count` units that close upon themselves. None where there is no step.
 pub fn norms(rate: &Rate, count: usize) -> Option<[f64; 3]> {
     let dt = rate.courant?;

@@ -1,4 +1,4 @@
-//! Application of LCF, F <- F - theta C C^T W F, to one block.
+//! The control of the curl of F in one block: what [`Relax`] takes of R = F - Pi F = C C^T W F.
 
 use super::curl_core::Cells;
 use super::volume::Masses;

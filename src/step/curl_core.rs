@@ -1,4 +1,4 @@
-//! LCF of eight cells that differ, by [`Curl`]: F <- F - theta W^-1 J K^T Z K J^T F.
+//! Pi of eight cells that differ, by [`Curl`]: F <- F - theta W^-1 J K^T Z K J^T F.
 
 use super::curl::Arrays;
 use super::volume::{cofactors, row, square};

@@ -1,5 +1,5 @@
-//! `finish`: with the neighbours' traces, flux (3), lift (14), and after the last stage the update (13), LCF, the internal
-//! variables and the survey of what has come out.
+//! `finish`: with the neighbours' traces, flux (3), lift (14), and after the last stage the update (13), the control of the
+//! curl, the internal variables and the survey of what has come out.
 
 use super::balance::Sums;
 use super::block_energy::BlockEnergy;
@@ -94,7 +94,7 @@ impl Work for Update<'_, '_> {
     }
 }
 
-/// LCF of a block.
+/// The control of the curl of a block.
 struct Project<'a, 'b, const M: usize>(&'a mut Block<'b>, &'a mut [F8]);
 
 impl<const M: usize> Work for Project<'_, '_, M> {

@@ -1,7 +1,7 @@
 //! One step of the method, as in section 5 of the paper.
 //!
 //! Per block of 8 cells: `begin` = G2P, predictor, time averages, volume term, traces; then, with the neighbours'
-//! traces, `finish` = flux, lift, update, LCF. [`Scheme`] is read-only, [`State`] is all that changes, [`Work`] carries
+//! traces, `finish` = flux, lift, update, control of the curl. [`Scheme`] is read-only, [`State`] is all that changes, [`Work`] carries
 //! nothing from step to step: threads, restart and regrid follow from that.
 
 mod across;

@@ -1,4 +1,4 @@
-//! The health of a state: current wave speeds (for dt and LCF), min J, and where stability was lost.
+//! The health of a state: current wave speeds (for dt and the control of the curl), min J, and where stability was lost.
 
 use super::health::{self, FacePoint, Site};
 use super::history::{recall, remember};
