@@ -131,11 +131,12 @@ pub fn varies(cases: &[Case], label: usize) -> bool {
 pub fn values(text: &str) -> Result<Vec<String>> {
     let mut out = Vec::new();
     for part in text.split(',').map(str::trim) {
-        let parts: Vec<&str> = part.split(':').collect();
-        let [from, to, count] = parts[..] else {
+        if !part.contains(':') {
             out.push(part.to_owned());
             continue;
-        };
+        }
+        let parts: Vec<&str> = part.split(':').collect();
+        let [from, to, count] = if let [from, to, count] = parts[..] { [from, to, count] } else { [""; 3] };
         let numbers = from.parse::<f64>().ok().zip(to.parse::<f64>().ok()).zip(count.parse::<usize>().ok());
         let Some(((from, to), count)) = numbers.filter(|(_, count)| (2..=1000).contains(count)) else {
             let remedy = "write from:to:count, such as 0.1:1.2:12, with a count from 2 to 1000";
