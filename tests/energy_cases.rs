@@ -61,9 +61,9 @@ fn accounted(outcome: &Outcome, plastic: bool) -> [f64; 2] {
     [range(&energy)[1] / energy[0], energy.last().unwrap() / energy[0]]
 }
 
-fn strip(law: &str, poisson: f64, thick: usize) -> PathBuf {
+fn strip(test: &str, law: &str, poisson: f64, thick: usize) -> PathBuf {
     let more = format!("[initial]\n{NOISE}\n[scheme]\ndegree = 2\n[time]\nend = 1e-2");
-    let name = format!("strip_{law}_{poisson}_{thick}");
+    let name = format!("strip_{test}_{law}_{poisson}_{thick}");
     let mesh = rectangle([12.0, thick as f64], [12, thick]);
     scene(&name, &mesh, &material(law, [2e11, poisson, 7800.0], ""), &all_free(), &more)
 }
@@ -89,7 +89,7 @@ fn noise_in_a_free_strip_one_and_two_cells_thick_never_grows() {
     ];
     for (law, poisson, thick, method, degree) in all.chain(two).chain(others) {
         let end = if poisson < 0.4 { "time.end=1.5e-2" } else { "time.end=4e-4" };
-        let [most, middle, last] = falls(&of(&strip(law, poisson, thick), method, degree, &[end]));
+        let [most, middle, last] = falls(&of(&strip("noise", law, poisson, thick), method, degree, &[end]));
         println!("{law} nu {poisson} {thick} thick {method} S{degree}: {most:.9}, {middle:.4}, {last:.4}");
         assert!(most <= NO_GAIN && last < middle, "{law} {poisson} {thick} {method} S{degree}: {most} {last}");
     }
@@ -98,7 +98,7 @@ fn noise_in_a_free_strip_one_and_two_cells_thick_never_grows() {
 /// So that the test above can fail: measured .177 of the start in the middle, .216 at the end.
 #[test]
 fn noise_in_the_free_strip_grows_under_lcf() {
-    let outcome = of(&strip("neo-hookean", 0.3, 1), "ader-dgmpm", 2, &["time.end=1.5e-2", "curl.control=lcf"]);
+    let outcome = of(&strip("lcf", "neo-hookean", 0.3, 1), "ader-dgmpm", 2, &["time.end=1.5e-2", "curl.control=lcf"]);
     let [most, middle, last] = falls(&outcome);
     println!("lcf: {most}, {middle}, {last}");
     assert!(last > 1.08 * middle, "{middle} {last}");
@@ -206,7 +206,8 @@ fn a_bracket_under_a_load_has_the_energies_of_finite_elements() {
     let edges = [("back", "kind = \"clamped\""), ("hole", FREE), ("rest", load)];
     let more = "[scheme]\ndegree = 2\n[time]\nend = 2e-4";
     let scene = scene("bracket", &format!("file = {mesh:?}"), &(steel + &aluminium), &edges, more);
-    let outcome = of(&scene, "ader-dgmpm", 2, &["output.0.every_steps=100"]);
+    // (With rusanov, the default: work 28.98, loss more.)
+    let outcome = of(&scene, "ader-dgmpm", 2, &["output.0.every_steps=100", "scheme.flux=dual"]);
     let work = outcome.summary["balance"]["boundary_work"].as_f64().unwrap();
     let [kinetic, strain] = ["kinetic_energy", "strain_energy"].map(|key| outcome.number(key));
     println!("bracket: work {work:.3}, kinetic {kinetic:.3}, strain {strain:.3}");

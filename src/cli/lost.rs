@@ -177,10 +177,13 @@ impl Case<'_> {
     }
 
     fn flux(&self) -> Option<String> {
-        let flux = self.scene.scheme.flux;
-        let why = if self.has_memory() { "makes energy in plastic flow" } else { "holds less in compression" };
-        (flux != Flux::Dual)
-            .then(|| format!("scheme.flux = \"{}\" {why}: leave it out, for the default \"dual\"", flux.name()))
+        let (flux, memory) = (self.scene.scheme.flux, self.has_memory());
+        let usual = if memory { Flux::Dual } else { Flux::Rusanov };
+        let why =
+            if memory { "makes energy in plastic flow" } else { "holds less in compression or in a body that spins" };
+        (flux != usual).then(|| {
+            format!("scheme.flux = \"{}\" {why}: leave it out, for the default \"{}\"", flux.name(), usual.name())
+        })
     }
 
     fn law(&self) -> Option<String> {
