@@ -46,6 +46,8 @@ pub struct Cli {
     command: Command,
 }
 
+// Parsed once: its size costs nothing.
+#[allow(clippy::large_enum_variant)]
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Import, make or inspect a mesh of quadrilaterals

@@ -294,6 +294,7 @@ mod tests {
         let found = carry(&mesh, &Line::new(2), &cloud, &Limits::of_degree(2), &memory).unwrap();
         let why: Vec<_> = found.deficient.iter().map(|d| (d.cell, d.cause)).collect();
         assert_eq!(why, [(1, Cause::Memory), (5, Cause::Memory), (6, Cause::Few)]);
+        #[allow(clippy::needless_range_loop)]
         for cell in 0..16 {
             let points = found.cloud.first[cell]..found.cloud.first[cell + 1];
             let on_nodes = memory[cell] || cell == 6;
