@@ -95,18 +95,17 @@ fn energy_never_rises(outcome: &Outcome, what: &str, by_rows: bool) {
         "{what}: largest change at a regrid {jump:.1e}, over the run {:.1e}",
         energy[energy.len() - 1] / energy[0] - 1.0
     );
-    // What the control gives back of the negative energy that a regrid leaves: measured up to 1.1e-5 (S1).
-    assert!(rise < 5e-5 && energy[energy.len() - 1] < energy[0], "{what}: {rise:e} above the start");
-    // Kinetic energy alone never rises (`conserve`). The projection onto gradients does work P : (F - Pi F) of either sign, and
-    // strain energy is no quadratic form: at a single regrid the total may rise by 8e-5 (S1 on 8 x 8 cells, each step one)
-    // to 3e-7 (S1 32 x 32). Between rows, ten steps apart, it may by what the control
-    // gives back of the negative energy of rotations: 1.5e-6 (S1 32 x 32).
+    // Rounding of sums over some thousand nodes.
+    assert!(rise < 1e-12 && energy[energy.len() - 1] < energy[0], "{what}: {rise:e} above the start");
+    // A regrid projects F, and strain energy is convex near F = 1: measured -2.7e-11 at least, as kinetic energy (`conserve`).
+    assert!(jump < 1e-12, "{what}: {jump:e} at a regrid");
+    // Between rows, ten steps apart, what the step in time of degree 1 gives and takes again while kinetic energy becomes strain
+    // energy: measured 3.4e-5 on 16 x 16 cells, and 8.1e-5 on 8 x 8 without any regrid; 7.1e-9 by S3 on 8 x 8.
     let between = energy.windows(2).map(|e| e[1] / e[0] - 1.0).fold(f64::NEG_INFINITY, f64::max);
-    assert!(!by_rows || between < 5e-5, "{what}: {between:e} between rows");
-    assert!(jump < 1e-4, "{what}: {jump:e} at a regrid");
+    assert!(!by_rows || between < 1e-4, "{what}: {between:e} between rows");
 }
 
-/// Order within .5 (measured .43 at S2) of that without regrids, error at most 1.8 times (measured 1.5) that on the coarser of the two grids.
+/// Order within .3 of that without regrids, error at most 1.3 times that on the coarser of the two grids.
 #[test]
 fn the_smooth_box_keeps_its_order_and_its_totals_from_grid_to_grid() {
     let exact = samples(&smooth_box(6, 14, ""));
@@ -141,8 +140,8 @@ fn the_smooth_box_keeps_its_order_and_its_totals_from_grid_to_grid() {
                 list(&coarser)
             );
             println!("S{degree} {name}: {words}");
-            assert!(found > order - 0.5, "S{degree} {name}: order {found:.2} against {order:.2}");
-            assert!((0..2).all(|k| errors[k] < 1.8 * coarser[k]), "S{degree} {name}: {words}");
+            assert!(found > order - 0.3, "S{degree} {name}: order {found:.2} against {order:.2}");
+            assert!((0..2).all(|k| errors[k] < 1.3 * coarser[k]), "S{degree} {name}: {words}");
         }
         let with_file = |k: usize| {
             let file = unstructured(folder.path(), k * n / 8);
@@ -162,7 +161,7 @@ fn the_smooth_box_keeps_its_order_and_its_totals_from_grid_to_grid() {
         let found = (errors[0] / errors[1]).log2();
         println!("S{degree} unstructured: {} order {found:.2}; wholly on it {}", list(&errors), list(&wholly));
         assert!(found > order - 0.3, "S{degree} unstructured: order {found:.2} against {order:.2}");
-        assert!((0..2).all(|k| errors[k] < 2.0 * wholly[k].max(plain[k])), "S{degree}");
+        assert!((0..2).all(|k| errors[k] < 1.3 * wholly[k].max(plain[k])), "S{degree}");
     }
 }
 
@@ -267,10 +266,10 @@ fn a_regrid_of_a_smooth_spinning_square_changes_its_energy_by_the_square_of_the_
 }
 
 /// The scene itself, after 2.5e-4 s: waves with kinks have come in from the free sides, and singular ones from the corners.
-/// Measured 8 -> 16: 1.3e-7 1.2e-8, 5.2e-9 2.5e-10, 3.0e-10 5.8e-11, orders 3.5, 4.4, 2.35 (4, 6, 8 if it were smooth).
+/// Measured 8 -> 16: 1.3e-7 1.2e-8, 5.2e-9 2.5e-10, 1.0e-9 5.2e-11, orders 3.5, 4.4, 4.3 (4, 6, 8 if it were smooth).
 #[test]
 fn a_regrid_of_the_spinning_square_changes_its_energy_by_little_that_falls() {
-    for (degree, measured) in [(1, 3.5), (2, 4.4), (3, 2.35)] {
+    for (degree, measured) in [(1, 3.5), (2, 4.4), (3, 4.3)] {
         let change = |n: usize| changes_of_energy(degree, n, 2.5e-4, &[]).iter().sum::<f64>().abs();
         let [coarse, fine] = [8, 16].map(change);
         let order = (coarse / fine).log2();

@@ -14,7 +14,7 @@ pub use traction::Traction;
 pub use velocity::Velocity;
 pub use wall::Wall;
 
-use crate::riemann::{Medium, Trace};
+use crate::riemann::{Impedance, Medium, Trace, current_normal};
 use std::sync::Arc;
 
 /// A number that a user prescribes over reference coordinates X (m) and time (s).
@@ -41,8 +41,13 @@ pub struct FacePoint {
 }
 
 impl FacePoint {
-    /// z_p = rho0 c_p with the current speed of the inside, kg/(m^2 s). One impedance for all directions: a condition is the
-    /// flux [`crate::riemann::Dual`] against what it prescribes, and the larger one lets a body under load creep less.
+    /// Z of the inside with its current normal and speeds: what comes out keeps its characteristic.
+    pub fn characteristic(&self, inside: &Trace<f64>) -> Impedance<f64> {
+        Impedance::new(inside.c, self.medium.density, current_normal(inside.f, inside.f, self.normal))
+    }
+
+    /// z_p = rho0 c_p with the current speed of the inside, kg/(m^2 s), for all directions: of what holds the body, as in the
+    /// flux [`crate::riemann::Dual`].
     pub fn impedance(&self, inside: &Trace<f64>) -> f64 {
         self.medium.density * inside.c[0]
     }

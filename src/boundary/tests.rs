@@ -5,8 +5,8 @@ use crate::riemann::star;
 use crate::tensor;
 
 const N: [f64; 2] = [0.6, 0.8];
-const AT: FacePoint =
-    FacePoint { x: [0.3, 0.4], normal: N, medium: Medium { density: 1.3, shear_admittance: 1.0, share: 1.0 } };
+const MEDIUM: Medium<f64> = Medium { density: 1.3, shear_admittance: 1.0, share: 1.0, turn: 0.0 };
+const AT: FacePoint = FacePoint { x: [0.3, 0.4], normal: N, medium: MEDIUM };
 const NOW: [TimeNode; 1] = [TimeNode { time: 0.0, weight: 1.0 }];
 
 fn trace(f: [f64; 4], v: [f64; 2]) -> Trace<f64> {

@@ -177,13 +177,14 @@ impl Case<'_> {
     }
 
     fn flux(&self) -> Option<String> {
-        let (flux, memory) = (self.scene.scheme.flux, self.has_memory());
-        let usual = if memory { Flux::Dual } else { Flux::Rusanov };
-        let why =
-            if memory { "makes energy in plastic flow" } else { "holds less in compression or in a body that spins" };
-        (flux != usual).then(|| {
-            format!("scheme.flux = \"{}\" {why}: leave it out, for the default \"{}\"", flux.name(), usual.name())
-        })
+        let flux = self.scene.scheme.flux;
+        let why = match flux {
+            Flux::Dual => return None,
+            _ if self.has_memory() => "makes energy in plastic flow",
+            Flux::Rusanov => "makes energy in large motions of a nearly incompressible body",
+            _ => "holds less in compression",
+        };
+        Some(format!("scheme.flux = \"{}\" {why}: leave it out, for the default \"dual\"", flux.name()))
     }
 
     fn law(&self) -> Option<String> {

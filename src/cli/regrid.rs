@@ -156,7 +156,7 @@ fn moved(
     let (cloud, virtual_points) = (placed.cloud.clone(), placed.virtual_points.clone());
     let body = Body { mesh, cloud, virtual_points, deficient: vec![], material };
     let after = build_scheme(scene, &body)?;
-    regrid::curl_free(&after.operators, components, &moved.same, &mut moved.u);
+    regrid::curl_free(&after, components, &moved.same, &mut moved.u);
     let new = State::pack(&after.operators.blocks, n, components, &moved.u);
     let mut new = State { time: state.time, step: state.step, ..new };
     let to = Grid { mesh: &body.mesh, material: &body.material };

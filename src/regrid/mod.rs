@@ -19,8 +19,8 @@ pub use tensor::TensorGrid;
 use crate::basis::Lagrange;
 use crate::error::Error;
 use crate::mesh::{Mesh, map};
-use crate::operators::Operators;
 use crate::state::UNKNOWNS;
+use crate::step::{Relax, Scheme};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -129,9 +129,12 @@ fn with_nodes<const M: usize>(old: &Grid, new: &Grid, field: &Field) -> Result<T
     Ok(out)
 }
 
-/// F <- Pi F in the cells that are not copies, theta = 1: nothing where the operators have no projection.
-pub fn curl_free(operators: &Operators, components: usize, same: &[Option<usize>], u: &mut [f64]) {
-    let Some(curl_free) = &operators.curl_free else { return };
+/// F <- Pi F in the cells that are not copies, theta = 1, where F is controlled by this projection ([`Relax::Gradient`]). It
+/// turns rotations inside of a cell into strain, so that energy may rise; [`Relax::Rotation`] lets what is no gradient be.
+pub fn curl_free(scheme: &Scheme, components: usize, same: &[Option<usize>], u: &mut [f64]) {
+    let operators = &scheme.operators;
+    let gradients = scheme.curl.is_some_and(|control| control.relax == Relax::Gradient);
+    let Some(curl_free) = operators.curl_free.as_ref().filter(|_| gradients) else { return };
     let n = operators.nodes();
     u.par_chunks_exact_mut(components * n).zip(same).enumerate().for_each(|(cell, (u, same))| {
         if same.is_none() {

@@ -38,6 +38,9 @@ pub struct Medium<L> {
     pub shear_admittance: L,
     /// theta, the weight of the jump of traction in v* where a flux has one ([`Dual`]).
     pub share: L,
+    /// How fast the face turns: the length of the face times the rate at which v changes along it, m/s. 0 where a flux does not
+    /// ask for it ([`Riemann::TURNS`]).
+    pub turn: L,
 }
 
 /// theta by degree, measured. The one-step scheme at .9 of its step limit grows below .72, .45, .35 (N = 1, 2, 3). Less of it
@@ -51,14 +54,18 @@ impl Medium<f64> {
     pub fn new(law: &Law, degree: usize) -> Self {
         let share = SHARE[degree.min(SHARE.len() - 1)];
         let (density, shear_admittance) = (law.density(), 1.0 / (law.density() * law.shear_modulus()).sqrt());
-        Self { density, shear_admittance, share }
+        Self { density, shear_admittance, share, turn: 0.0 }
     }
 
     /// In all lanes.
     #[inline(always)]
     pub fn splat<L: Lane>(&self) -> Medium<L> {
-        let [density, shear_admittance, share] = [self.density, self.shear_admittance, self.share];
-        Medium { density: L::splat(density), shear_admittance: L::splat(shear_admittance), share: L::splat(share) }
+        Medium {
+            density: L::splat(self.density),
+            shear_admittance: L::splat(self.shear_admittance),
+            share: L::splat(self.share),
+            turn: L::splat(self.turn),
+        }
     }
 }
 
@@ -66,6 +73,9 @@ impl Medium<f64> {
 pub trait Riemann {
     /// Whether it looks at c_s. Where it does not, traces do not hold it, and it is given as 0.
     const SHEAR: bool;
+
+    /// Whether it looks at how fast a face turns, [`Medium::turn`].
+    const TURNS: bool = false;
 
     /// Flux*.N in the order of U: [F11, F12, F21, F22, p1, p2].
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6];

@@ -243,7 +243,7 @@ pub struct Scheme {
     pub degree: usize,
     /// N_T, degree in time, 0 to 6; default N.
     pub time_degree: usize,
-    /// The flux on inner faces; default rusanov, dual where a law has memory.
+    /// The flux on inner faces; default dual.
     pub flux: Flux,
     /// The size of a step.
     pub step: Step,

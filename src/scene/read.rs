@@ -36,16 +36,12 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
 
     let need = |key: &'static str, remedy: &str| root.missing(key, remedy);
     let mesh = mesh(mesh_table.as_mut().ok_or_else(|| need("mesh", "add [mesh] with file = \"name.msh\""))?)?;
-    let (mut scheme, flux) =
-        scheme(scheme_table.as_mut().ok_or_else(|| need("scheme", "add [scheme] with method and degree"))?)?;
+    let scheme = scheme(scheme_table.as_mut().ok_or_else(|| need("scheme", "add [scheme] with method and degree"))?)?;
     let general = super::points::cloud(cloud_table.as_mut(), scheme.degree)?;
     if material_tables.is_empty() {
         return Err(need("material", "add [[material]] with law, density and the law's parameters"));
     }
     let materials = materials(&mut material_tables, &general, scheme.degree)?;
-    // Where two sides have yielded differently only the dual flux dissipates; an elastic body that spins needs jumps of F damped.
-    let memory = super::build::laws(&materials).iter().any(|law| !law.internal().is_empty());
-    scheme.flux = flux.unwrap_or(if memory { Flux::Dual } else { Flux::Rusanov });
     let (start, end) = time(time_table.as_mut().ok_or_else(|| need("time", "add [time] with end, in s"))?)?;
     let scene = Scene {
         title: title.unwrap_or_else(|| origin.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),
@@ -93,13 +89,12 @@ fn mesh(table: &mut Reader) -> Result<Mesh> {
 const CELLS: Check =
     Check { range: "whole, from 1 to 100000", holds: |n| n.fract() == 0.0 && (1.0..=100_000.0).contains(&n) };
 
-/// [scheme], and the flux where it names one.
-fn scheme(table: &mut Reader) -> Result<(Scheme, Option<Flux>)> {
+fn scheme(table: &mut Reader) -> Result<Scheme> {
     table.later(&["impedance"]);
     let method = table.choice("method", Method::NAMES, &[])?;
     let degree = table.integer("degree", 0..=6)?;
     let time_degree = table.integer("time_degree", 0..=6)?;
-    let flux = table.choice("flux", Flux::NAMES, &[])?;
+    let flux = table.choice("flux", Flux::NAMES, &[])?.unwrap_or(Flux::Dual);
     let cfl = table.number("cfl", POSITIVE)?;
     let safety = table.number("safety", POSITIVE)?;
     let sweeps = table.choice("sweeps", Sweeps::NAMES, &[])?;
@@ -126,7 +121,7 @@ fn scheme(table: &mut Reader) -> Result<(Scheme, Option<Flux>)> {
         None if time_degree == degree => Sweeps::Ladder,
         None => Sweeps::Paper,
     };
-    Ok((Scheme { method, degree, time_degree, flux: Flux::Rusanov, step, sweeps }, flux))
+    Ok(Scheme { method, degree, time_degree, flux, step, sweeps })
 }
 
 fn materials(tables: &mut [Reader], general: &General, degree: usize) -> Result<Vec<Material>> {

@@ -46,12 +46,12 @@ fn defaults() {
     assert_eq!(scene.materials[0].parameters["young"], 2e11);
     assert_eq!(scene.initial.deformation.each_ref().map(|f| f.constant().unwrap()), [1.0, 0.0, 0.0, 1.0]);
     assert_eq!(scene.boundaries[0].condition, Condition::Wall { speed: Expression::number(0.0) });
-    assert_eq!((scene.curl, scene.scheme.flux), (Curl::Rotation { alpha: 3.0 }, Flux::Rusanov));
+    assert_eq!((scene.curl, scene.scheme.flux), (Curl::Rotation { alpha: 3.0 }, Flux::Dual));
     let scheme = Scheme {
         method: Method::AderDgmpm,
         degree: 2,
         time_degree: 2,
-        flux: Flux::Rusanov,
+        flux: Flux::Dual,
         step: Step::Safety(0.9),
         sweeps: Sweeps::Ladder,
     };

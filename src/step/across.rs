@@ -151,17 +151,19 @@ pub(super) enum Beyond<'a> {
     Apart(Apart<'a>),
 }
 
-impl Beyond<'_> {
-    /// The numbers of a point, on a path that need not be fast.
+/// On a path that need not be fast.
+impl Other for Beyond<'_> {
     #[inline(always)]
-    pub fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
+    fn load<L: Lanes, const W: usize>(&self, point: usize) -> [L; W] {
         match *self {
             Beyond::Aligned(other) => other.load(point),
             Beyond::Joined(other) => other.load(point),
             Beyond::Apart(other) => other.load(point),
         }
     }
+}
 
+impl Beyond<'_> {
     /// Number k of a point with `width` numbers in one lane.
     pub fn number(&self, point: usize, k: usize, width: usize, lane: usize) -> f64 {
         let at = |point: usize| point * width + k;

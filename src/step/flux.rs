@@ -54,6 +54,19 @@ fn turned<L: Lanes, const W: usize>(mut x: [L; W]) -> [L; W] {
     x
 }
 
+/// How fast a face turns, [`Medium::turn`], from v at its first and last point, which are `span` of its length apart.
+#[inline(always)]
+fn turn<L: Lanes, O: Other, const W: usize>(own: &[[F8; W]], other: &O, span: f64) -> L {
+    let Some(last) = own.len().checked_sub(1).filter(|last| *last > 0) else { return L::zero() };
+    let (first, beyond, beyond_last) = (&own[0], other.load::<L, W>(0), other.load::<L, W>(last));
+    let mut square = L::zero();
+    for k in 4..6 {
+        let change = (L::load(&own[last][k]) - L::load(&first[k])) + (beyond_last[k] - beyond[k]);
+        square = change.mul_add(change, square);
+    }
+    square.sqrt() * L::splat(0.5 / span)
+}
+
 /// The four faces of a block, all lanes as faces between cells of one law.
 struct Faces<'a> {
     flux: Flux,
@@ -65,6 +78,8 @@ struct Faces<'a> {
     metric: &'a Metric<F8>,
     /// Points of a face.
     points: usize,
+    /// From the first to the last of them, over the length of the face.
+    span: f64,
     medium: Medium<f64>,
     /// [face][point][6], out.
     lift: &'a mut [F8],
@@ -94,8 +109,11 @@ impl Faces<'_> {
     #[inline(always)]
     fn of_face<L: Lanes, O: Other, R: Riemann, const W: usize>(&mut self, face: usize, other: O, riemann: &R) {
         let m = self.points;
-        let medium = self.medium.splat::<L>();
+        let mut medium = self.medium.splat::<L>();
         let own = &self.own.as_chunks::<W>().0[face * m..(face + 1) * m];
+        if R::TURNS {
+            medium.turn = turn::<L, O, W>(own, &other, self.span);
+        }
         let metric = self.metric.load::<L>();
         let (normal, length) = (metric.normal(face), metric.length(face));
         let lift = &mut self.lift.as_chunks_mut::<6>().0[m * face..m * (face + 1)];
@@ -156,7 +174,10 @@ impl Meter<'_, '_> {
         let neighbours = &scheme.operators.blocks.neighbours[place.block][face];
         let factor = place.stage.dt * scheme.weight(place.stage.number);
         let normal = metric.normal(face);
-        let medium = place.medium().splat::<L>();
+        let mut medium = place.medium().splat::<L>();
+        if R::TURNS {
+            medium.turn = turn::<L, _, W>(sides.own.as_chunks::<W>().0, sides.other, scheme.span());
+        }
         let weights = &scheme.operators.line.basis.weights[..scheme.operators.line.m];
         for (point, (own, weight)) in sides.own.as_chunks::<W>().0.iter().zip(weights).enumerate() {
             let beyond = turned(sides.other.load::<L, W>(point));
@@ -208,7 +229,17 @@ pub(super) fn lift(place: Place, traces: &Traces, nodes: &mut Arrays, mut books:
     }
     let own = traces.faces(4 * block, 4, length);
     let (metric, medium) = (place.metric(), place.medium());
-    scheme.kernel.run(Faces { flux, metered, own, other: &other, metric, points: m, medium, lift: &mut nodes.lift });
+    scheme.kernel.run(Faces {
+        flux,
+        metered,
+        own,
+        other: &other,
+        metric,
+        points: m,
+        span: scheme.span(),
+        medium,
+        lift: &mut nodes.lift,
+    });
     for face in 0..4 {
         let sides = Sides { face, own: &own[face * length..][..length], other: &other[face] };
         if plan[face].special {

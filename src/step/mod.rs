@@ -212,6 +212,12 @@ impl Scheme {
         }
     }
 
+    /// From the first to the last Gauss node of a line, over its length.
+    fn span(&self) -> f64 {
+        let nodes = &self.operators.line.basis.nodes;
+        nodes[nodes.len() - 1] - nodes[0]
+    }
+
     /// Number of stages of a step (1 for ADER).
     pub fn stages(&self) -> usize {
         match &self.method {

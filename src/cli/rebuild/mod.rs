@@ -135,8 +135,8 @@ impl<'a> Regrids<'a> {
         clock.lap(3);
         let operators = self.operators(&body, &links)?;
         clock.lap(4);
-        regrid::curl_free(&operators, state.components, &moved.same, &mut moved.u);
         let scheme = pipeline::scheme(self.scene, &body, operators, self.kernel);
+        regrid::curl_free(&scheme, state.components, &moved.same, &mut moved.u);
         let new = State::pack(&scheme.operators.blocks, n, state.components, &moved.u);
         let mut new = State { time: state.time, step: state.step, ..new };
         let before = (grid(&old.body.mesh, &old.body.material), &old.body.cloud, &old.scheme);
