@@ -61,14 +61,15 @@ impl Snapshot {
         self.u.len() / (6 * (self.degree + 1).pow(2))
     }
 
-    /// `[cell][component][node]` of the first `components` of F, p, u.
+    /// `[cell][component][node]` of the first `components` of F, p, u; a u that the snapshot lacks is 0.
     pub fn unknowns(&self, components: usize) -> Vec<f64> {
         let nodes = (self.degree + 1).pow(2);
         let mut all = Vec::with_capacity(self.cells() * components * nodes);
         for (cell, unknowns) in self.u.chunks(6 * nodes).enumerate() {
             all.extend_from_slice(unknowns);
-            let others = self.displacement.get(2 * nodes * cell..2 * nodes * (cell + 1)).unwrap_or_default();
-            all.extend_from_slice(&others[..((components - 6) * nodes).min(others.len())]);
+            let (others, wanted) =
+                (self.displacement.get(2 * nodes * cell..).unwrap_or_default(), (components - 6) * nodes);
+            all.extend(others.iter().copied().chain(std::iter::repeat(0.0)).take(wanted));
         }
         all
     }

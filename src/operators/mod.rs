@@ -118,6 +118,15 @@ pub struct Line {
     pub ends: [Vec<f64>; 2],
     /// Lift: l_k(0) / w_k and l_k(1) / w_k.
     pub lift: [Vec<f64>; 2],
+    /// Traces of the displacement whose jump is held ([`crate::riemann::hold`]) at 0 and 1: l_k, less w_k P_N(2 x_k - 1) where N is
+    /// even, P_N being Legendre's polynomial.
+    ///
+    /// What no polynomial of degree N has of a smooth function begins with P_(N+1): even, it is the same at both ends and does
+    /// not jump where cells are alike; odd, it jumps by 2 (h/2)^(N+1) u^(N+1) / (2N+1)!!, and to hold that jump would cost
+    /// an order. It is 1/(2N+1) of the jump of the highest coefficient a_N, and a_N / (2N+1) = sum_k w_k P_N u_k.
+    pub held: [Vec<f64>; 2],
+    /// Lift by those traces: [`Line::held`] / w_k.
+    pub held_lift: [Vec<f64>; 2],
 }
 
 impl Line {
@@ -129,13 +138,29 @@ impl Line {
         let weak = (0..m * m).map(|e| w[e % m] * slope[(e % m) * m + e / m] / w[e / m]).collect();
         let ends = [basis.values(0.0), basis.values(1.0)];
         let lift = [0, 1].map(|end: usize| ends[end].iter().zip(w).map(|(l, w)| l / w).collect());
-        Self { basis, m, slope, weak, ends, lift }
+        let highest = |k: usize| match degree {
+            0 => 0.0,
+            _ if degree % 2 == 1 => 0.0,
+            _ => w[k] * legendre(degree, 2.0 * basis.nodes[k] - 1.0),
+        };
+        let held = [0, 1].map(|end: usize| (0..m).map(|k| ends[end][k] - highest(k)).collect::<Vec<f64>>());
+        let held_lift = [0, 1].map(|end: usize| held[end].iter().zip(w).map(|(l, w)| l / w).collect());
+        Self { basis, m, slope, weak, ends, lift, held, held_lift }
     }
 
     /// Parent coordinates of the nodes a = i M + j.
     pub fn nodes(&self) -> Vec<[f64; 2]> {
         (0..self.m * self.m).map(|a| self.basis.node_2d(a)).collect()
     }
+}
+
+/// Legendre's polynomial P_n on [-1, 1].
+fn legendre(n: usize, x: f64) -> f64 {
+    let (mut before, mut now) = (0.0, 1.0);
+    for k in 0..n {
+        (before, now) = (now, ((2 * k + 1) as f64 * x * now - k as f64 * before) / (k + 1) as f64);
+    }
+    now
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Acoustic (linearised Godunov) fluxes.
 
-use super::{Impedance, Medium, Riemann, Trace, add_tangential, current_normal, star, tangent};
+use super::{Impedance, Looks, Medium, Riemann, Trace, add_tangential, current_normal, star, tangent};
 use crate::lane::Lane;
 use crate::tensor;
 
@@ -13,7 +13,7 @@ pub struct Acoustic;
 pub struct AcousticCurl;
 
 impl Riemann for Acoustic {
-    const SHEAR: bool = true;
+    const LOOKS: Looks = Looks::Shear;
 
     #[inline(always)]
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6] {
@@ -29,7 +29,7 @@ impl Riemann for Acoustic {
 }
 
 impl Riemann for AcousticCurl {
-    const SHEAR: bool = true;
+    const LOOKS: Looks = Looks::Shear;
 
     #[inline(always)]
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6] {

@@ -1,6 +1,6 @@
 //! Lax-Friedrichs in the variables dual to (F, p), velocity and traction, with what holds it under compression.
 
-use super::{Medium, Riemann, Trace};
+use super::{Looks, Medium, Riemann, Trace};
 use crate::lane::Lane;
 use crate::tensor;
 
@@ -110,8 +110,7 @@ impl Dual {
 }
 
 impl Riemann for Dual {
-    const SHEAR: bool = false;
-    const TURNS: bool = true;
+    const LOOKS: Looks = Looks::Displacement;
 
     #[inline(always)]
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6] {

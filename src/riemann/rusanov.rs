@@ -1,6 +1,6 @@
 //! Local Lax-Friedrichs (Rusanov) flux.
 
-use super::{Medium, Riemann, Trace};
+use super::{Looks, Medium, Riemann, Trace};
 use crate::lane::Lane;
 
 /// Flux* = mean of both sides - c/2 (U^+ - U^-), c the larger current c_p.
@@ -8,7 +8,7 @@ use crate::lane::Lane;
 pub struct Rusanov;
 
 impl Riemann for Rusanov {
-    const SHEAR: bool = false;
+    const LOOKS: Looks = Looks::Nothing;
 
     #[inline(always)]
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6] {

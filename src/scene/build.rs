@@ -13,6 +13,7 @@ use crate::material::Law;
 use crate::mesh::{self, Link, Mesh};
 use crate::observe::{Contents, Field, Ledger, Line, Observer, Outside, Samples, Schedule, Snapshots};
 use crate::operators::{Needs, Operators, Sampling};
+use crate::riemann::Looks;
 use crate::run::{Folder, Settings};
 use crate::source::{self, BodyForce};
 use crate::state::{State, UNKNOWNS};
@@ -182,7 +183,7 @@ impl Scene {
             return self.state_from_cloud(mesh, scheme);
         }
         let (basis, n) = (&scheme.operators.line.basis, scheme.operators.nodes());
-        let components = if self.wants_displacement() { UNKNOWNS + 2 } else { UNKNOWNS };
+        let components = self.components();
         let mut cells = vec![0.0; mesh.cells.len() * components * n];
         let material = self.material_of_cells(mesh);
         let exact = self.exact.as_ref().filter(|exact| exact.initial).and_then(|_| self.build_exact());
@@ -246,6 +247,12 @@ impl Scene {
     pub fn wants_displacement(&self) -> bool {
         let balance = |output: &Output| output.what == What::Ledger { balance: true };
         self.outputs.iter().any(|output| output.fields.contains(&Field::Displacement) || balance(output))
+    }
+
+    /// Components of the state: with the displacement where an output asks for it or the flux looks at it.
+    pub(super) fn components(&self) -> usize {
+        let carried = self.wants_displacement() || self.scheme.flux.looks() == Looks::Displacement;
+        if carried { UNKNOWNS + 2 } else { UNKNOWNS }
     }
 
     /// dt c / h and the end.

@@ -13,7 +13,7 @@ impl Scene {
     /// P2G of the fields of the cloud file by chi (18), see [`from_points`].
     pub(super) fn state_from_cloud(&self, mesh: &Mesh, scheme: &Scheme) -> Result<State> {
         let given = self.given_points(mesh)?;
-        let components = if self.wants_displacement() { UNKNOWNS + 2 } else { UNKNOWNS };
+        let components = self.components();
         let values = self.unknowns_of_points(mesh, scheme, &given, components)?;
         let (line, n) = (&scheme.operators.line, scheme.operators.nodes());
         let cells = from_points(mesh, line, &given.cloud, &self.limits, &values, components)?;

@@ -3,7 +3,7 @@
 use super::Scene;
 use crate::error::Result;
 use crate::io::snapshot::Snapshot;
-use crate::state::{State, UNKNOWNS};
+use crate::state::State;
 use crate::step::Scheme;
 use std::path::Path;
 
@@ -28,11 +28,12 @@ impl Scene {
             let what = format!("the snapshot is at {:e} s, and the run ends at {:e} s", snapshot.time, self.end);
             return Err(fail(what, "give a later time.end"));
         }
-        let components = if self.wants_displacement() { UNKNOWNS + 2 } else { UNKNOWNS };
-        if components > UNKNOWNS && snapshot.displacement.is_empty() {
+        if self.wants_displacement() && snapshot.displacement.is_empty() {
             let what = "an output asks for the displacement, which the snapshot lacks".to_owned();
             return Err(fail(what, "leave out the field `displacement` and the balance of the ledger"));
         }
+        // Where no output asks for it, the displacement may count from here: what is held are jumps that come now.
+        let components = self.components();
         let state = State::pack(&scheme.operators.blocks, n, components, &snapshot.unknowns(components));
         let mut state = State { time: snapshot.time, step: snapshot.step, ..state };
         if snapshot.internal.len() != scheme.virgin_internal().len() {

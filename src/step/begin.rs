@@ -15,6 +15,7 @@ use crate::lane::{Coefficient, F8, LANES, Lanes, Work, prefetch};
 use crate::material::Material;
 use crate::mesh::map;
 use crate::operators::{PointMatrices, Points, Share};
+use crate::riemann::Looks;
 use crate::state::{State, UNKNOWNS};
 use crate::with_law;
 
@@ -107,6 +108,51 @@ impl Work for Extras<'_, '_> {
     }
 }
 
+/// u at the nodes, averaged as F and v are: of the stage by Runge-Kutta, u^n + dt/2 v by ADER, which is what the mean over the step is
+/// to second order; 0 where the displacement is not carried.
+struct Place<'a, 'b>(&'a mut Block<'b>);
+
+impl Work for Place<'_, '_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self(block) = self;
+        let (n, stride, dt) = (block.scheme.operators.nodes(), block.rate.len(), block.stage.dt);
+        let nodes = &mut block.scratch.nodes;
+        let place = &mut nodes.place.as_chunks_mut::<2>().0[..n];
+        if !block.state.has_displacement() {
+            place.fill([F8::ZERO; 2]);
+            return;
+        }
+        let own = UNKNOWNS * n..(UNKNOWNS + 2) * n;
+        let start = &block.state.u[stride * block.block..][own.clone()];
+        match &block.scheme.method {
+            Method::Ader { .. } => {
+                let half = L::splat(0.5 * dt);
+                for (a, (place, mean)) in place.iter_mut().zip(nodes.mean.as_chunks::<6>().0).enumerate() {
+                    for k in 0..2 {
+                        half.mul_add(L::load(&mean[4 + k]), L::load(&start[k * n + a])).store(&mut place[k]);
+                    }
+                }
+            }
+            Method::RungeKutta(tableau) => {
+                for (a, place) in place.iter_mut().enumerate() {
+                    *place = [start[a], start[n + a]];
+                }
+                let row = &tableau.a[block.stage.number];
+                for (stage, factor) in row.iter().enumerate().filter(|(_, factor)| **factor != 0.0) {
+                    let (rate, factor) = (&block.before[stage * stride..][own.clone()], L::splat(factor * dt));
+                    for (a, place) in place.iter_mut().enumerate() {
+                        for k in 0..2 {
+                            factor.mul_add(L::load(&rate[k * n + a]), L::load(&place[k])).store(&mut place[k]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// Entries of a matrix beyond which the processor sees by itself what comes next; asking for them costs 5 % there.
 const SEEN: usize = 128;
 
@@ -151,18 +197,22 @@ impl Block<'_> {
             kernel.run(Extras(&mut self));
         }
         self.scratch.phases.book(Phase::Volume, &mut clock);
-        let (shear, metered) = (self.scheme.flux.has_shear(), self.sums.is_some());
-        let width = volume::width(shear, metered);
+        let (looks, metered) = (self.scheme.flux.looks(), self.sums.is_some());
+        let width = volume::width(looks, metered);
+        let placed = looks == Looks::Displacement;
+        if placed {
+            kernel.run(Place(&mut self));
+        }
         let (arrays, traces) = (&self.scratch.nodes, &mut *self.traces);
         with_nodes!(line.m, M => if metered {
-            kernel.run(volume::Traces::<'_, M, true> { line, metric, arrays, width, traces });
+            kernel.run(volume::Traces::<'_, M, true> { line, metric, arrays, width, placed, traces });
         } else {
-            kernel.run(volume::Traces::<'_, M, false> { line, metric, arrays, width, traces });
+            kernel.run(volume::Traces::<'_, M, false> { line, metric, arrays, width, placed, traces });
         });
         let law = &self.scheme.laws[operators.blocks.material[self.block]];
         // Later stages of RK are no states: what is wrong with them shows in the state that they make.
         let worst = (self.stage.number == 0).then_some((&mut *self.worst, operators.blocks.count[self.block]));
-        if kernel.run(volume::Speeds { law, metric, width, shear, traces: self.traces, worst }) {
+        if kernel.run(volume::Speeds { law, metric, width, looks, traces: self.traces, worst }) {
             let count = operators.blocks.count[self.block];
             self.worst.lost_at(FacePoint::find(self.block, count, self.traces, width));
         }
@@ -174,7 +224,7 @@ impl Block<'_> {
         let (scheme, n, stride) = (self.scheme, self.scheme.operators.nodes(), self.rate.len());
         let Method::RungeKutta(tableau) = &scheme.method else { return };
         let nodes = &mut self.scratch.nodes;
-        // The displacement moves nothing: only the six of U are needed.
+        // The law needs the six of U alone.
         let start = &self.state.u[stride * self.block..][..UNKNOWNS * n];
         let factors = tableau.a[self.stage.number].iter().map(|a| a * self.stage.dt);
         let terms = Terms::new(factors, self.before, stride, UNKNOWNS * n);

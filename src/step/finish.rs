@@ -12,6 +12,7 @@ use super::{Phase, Scheme, Scratch, Speeds, Stage, Survey, across, flux};
 use crate::lane::{F8, Lanes, Work};
 use crate::operators::curl_free::Relax;
 use crate::operators::{Line, Metric, determinant};
+use crate::riemann::Looks;
 use crate::state::State;
 
 /// The work on one block.
@@ -62,8 +63,10 @@ impl Block<'_> {
         let place = flux::Place { scheme: self.scheme, stage: self.stage, block: self.block };
         let books = flux::Books { given: self.given.as_deref_mut(), sums: self.sums.as_deref_mut() };
         flux::lift(place, &self.traces, &mut self.scratch.nodes, books);
-        let (line, metric, lift) = (&operators.line, place.metric(), &self.scratch.nodes.lift);
-        with_nodes!(line.m, M => kernel.run(Lift::<'_, M> { line, metric, lift, rate: self.rate }));
+        let (line, metric, nodes) = (&operators.line, place.metric(), &self.scratch.nodes);
+        let held = (self.scheme.flux.looks() == Looks::Displacement).then_some(&nodes.held[..]);
+        let lift = &nodes.lift[..];
+        with_nodes!(line.m, M => kernel.run(Lift::<'_, M> { line, metric, lift, held, rate: self.rate }));
         self.scratch.phases.book(Phase::Flux, &mut clock);
         let Some(New { u, internal, speed, worst }) = self.new.take() else { return };
         kernel.run(Update(&mut self, u));
@@ -167,12 +170,28 @@ impl Block<'_> {
     }
 }
 
+/// The sum over the faces of what is lifted to node (i, j), number k of W.
+#[inline(always)]
+fn at_node<L: Lanes, const W: usize, const M: usize>(
+    lift: &[[F8; W]],
+    ends: &[[f64; M]; 2],
+    [i, j]: [usize; 2],
+    k: usize,
+) -> L {
+    let mut sum = L::splat(ends[0][i]) * L::load(&lift[j][k]);
+    sum = L::splat(ends[1][i]).mul_add(L::load(&lift[M + j][k]), sum);
+    sum = L::splat(ends[0][j]).mul_add(L::load(&lift[2 * M + i][k]), sum);
+    L::splat(ends[1][j]).mul_add(L::load(&lift[3 * M + i][k]), sum)
+}
+
 /// dU_a/dt = (J dU_a/dt - Phi_a(x_fk) w_k lifted_fk / w_a) / J_a; w_k and one factor of w_a are the same number.
 struct Lift<'a, const M: usize> {
     line: &'a Line,
     metric: &'a Metric<F8>,
     /// [face][point][6].
     lift: &'a [F8],
+    /// [face][point][2], by the traces of what is held; none where the flux holds nothing.
+    held: Option<&'a [F8]>,
     rate: &'a mut [F8],
 }
 
@@ -194,11 +213,20 @@ impl<const M: usize> Work for Lift<'_, M> {
             for i in 0..M {
                 for j in 0..M {
                     let a = i * M + j;
-                    let mut sum = L::splat(ends[0][i]) * L::load(&lift[j][k]);
-                    sum = L::splat(ends[1][i]).mul_add(L::load(&lift[M + j][k]), sum);
-                    sum = L::splat(ends[0][j]).mul_add(L::load(&lift[2 * M + i][k]), sum);
-                    sum = L::splat(ends[1][j]).mul_add(L::load(&lift[3 * M + i][k]), sum);
+                    let sum = at_node::<L, 6, M>(lift, &ends, [i, j], k);
                     ((L::load(&rate[a]) - sum) * inverse[i][j]).store(&mut rate[a]);
+                }
+            }
+        }
+        let Some(held) = self.held else { return };
+        let ends = [row::<M>(&self.line.held_lift[0]), row::<M>(&self.line.held_lift[1])];
+        let held = &held.as_chunks::<2>().0[..4 * M];
+        for (k, rate) in self.rate[4 * n..6 * n].chunks_exact_mut(n).enumerate() {
+            for i in 0..M {
+                for j in 0..M {
+                    let a = i * M + j;
+                    let sum = at_node::<L, 2, M>(held, &ends, [i, j], k);
+                    (-inverse[i][j]).mul_add(sum, L::load(&rate[a])).store(&mut rate[a]);
                 }
             }
         }

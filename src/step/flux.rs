@@ -6,48 +6,50 @@ use super::outside::Given;
 use super::volume::{Arrays, width};
 use super::{Scheme, Stage};
 use crate::boundary::FacePoint;
-use crate::lane::{F8, LANES, Lanes, Work, load_array, store_array};
+use crate::lane::{F8, LANES, Lane, Lanes, Work, load_array, store_array};
 use crate::material::Law;
 use crate::mesh::map;
 use crate::operators::{Metric, Neighbour, Side};
-use crate::riemann::{Flux, Medium, Riemann, Trace, interface};
+use crate::riemann::{Flux, Looks, Medium, Riemann, Trace, hold, interface};
 use crate::with_flux;
 
 /// Runs `$body` with `$riemann` bound to the flux and `$numbers` to the constant numbers of a trace, see [`width`].
 macro_rules! with_width {
     ($flux:expr, $metered:expr, $riemann:ident, $numbers:ident => $body:expr) => {
-        with_flux!($flux, $riemann => match (shear($riemann), $metered) {
-            (false, false) => with_width!(@ false, false, $numbers, $body),
-            (true, false) => with_width!(@ true, false, $numbers, $body),
-            (false, true) => with_width!(@ false, true, $numbers, $body),
-            (true, true) => with_width!(@ true, true, $numbers, $body),
+        with_flux!($flux, $riemann => match (looks($riemann), $metered) {
+            (Looks::Nothing, false) => with_width!(@ Nothing, false, $numbers, $body),
+            (Looks::Nothing, true) => with_width!(@ Nothing, true, $numbers, $body),
+            (Looks::Shear, false) => with_width!(@ Shear, false, $numbers, $body),
+            (Looks::Shear, true) => with_width!(@ Shear, true, $numbers, $body),
+            (Looks::Displacement, false) => with_width!(@ Displacement, false, $numbers, $body),
+            (Looks::Displacement, true) => with_width!(@ Displacement, true, $numbers, $body),
         })
     };
-    (@ $shear:literal, $metered:literal, $numbers:ident, $body:expr) => {{
-        const $numbers: usize = width($shear, $metered);
+    (@ $looks:ident, $metered:literal, $numbers:ident, $body:expr) => {{
+        const $numbers: usize = width(Looks::$looks, $metered);
         $body
     }};
 }
 
 #[inline(always)]
-fn shear<R: Riemann>(_: &R) -> bool {
-    R::SHEAR
+fn looks<R: Riemann>(_: &R) -> Looks {
+    R::LOOKS
 }
 
 /// A trace of some lanes from its numbers.
 #[inline(always)]
 fn trace_of<L: Lanes, R: Riemann, const W: usize>(x: &[L; W]) -> Trace<L> {
-    let shear = if R::SHEAR { x[9] } else { L::zero() };
+    let shear = if R::LOOKS == Looks::Shear { x[9] } else { L::zero() };
     Trace { f: [x[0], x[1], x[2], x[3]], v: [x[4], x[5]], t: [x[6], x[7]], c: [x[8], shear] }
 }
 
 /// The other side's trace with this side's normal: its traction is P N^+ with N^+ = -N, and so is s = P T, which stands
 /// behind c.
 #[inline(always)]
-fn turned<L: Lanes, const W: usize>(mut x: [L; W]) -> [L; W] {
+fn turned<L: Lanes, R: Riemann, const W: usize>(mut x: [L; W]) -> [L; W] {
     x[6] = -x[6];
     x[7] = -x[7];
-    if W >= width(false, true) {
+    if W == width(R::LOOKS, true) {
         x[W - 2] = -x[W - 2];
         x[W - 1] = -x[W - 1];
     }
@@ -67,6 +69,13 @@ fn turn<L: Lanes, O: Other, const W: usize>(own: &[[F8; W]], other: &O, span: f6
     square.sqrt() * L::splat(0.5 / span)
 }
 
+/// What is lifted of the held jump of displacement, [`hold`], from the numbers of both sides and their densities.
+#[inline(always)]
+fn held<L: Lane>(own: &[L], there: &[L], density: [f64; 2]) -> [L; 2] {
+    let moduli = [L::splat(density[0]) * (own[8] * own[8]), L::splat(density[1]) * (there[8] * there[8])];
+    hold([there[9] - own[9], there[10] - own[10]], moduli)
+}
+
 /// The four faces of a block, all lanes as faces between cells of one law.
 struct Faces<'a> {
     flux: Flux,
@@ -83,6 +92,8 @@ struct Faces<'a> {
     medium: Medium<f64>,
     /// [face][point][6], out.
     lift: &'a mut [F8],
+    /// What is held, [face][point][2], out where the flux looks at the displacement.
+    held: &'a mut [F8],
 }
 
 impl Work for Faces<'_> {
@@ -111,7 +122,7 @@ impl Faces<'_> {
         let m = self.points;
         let mut medium = self.medium.splat::<L>();
         let own = &self.own.as_chunks::<W>().0[face * m..(face + 1) * m];
-        if R::TURNS {
+        if R::LOOKS == Looks::Displacement {
             medium.turn = turn::<L, O, W>(own, &other, self.span);
         }
         let metric = self.metric.load::<L>();
@@ -119,7 +130,12 @@ impl Faces<'_> {
         let lift = &mut self.lift.as_chunks_mut::<6>().0[m * face..m * (face + 1)];
         for point in 0..m {
             let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[point]));
-            let plus = trace_of::<L, R, W>(&turned(other.load::<L, W>(point)));
+            let there = turned::<L, R, W>(other.load::<L, W>(point));
+            let plus = trace_of::<L, R, W>(&there);
+            if R::LOOKS == Looks::Displacement {
+                let held = held(&load_array::<L, W>(&own[point]), &there, [self.medium.density; 2]);
+                store_array(held, &mut self.held.as_chunks_mut::<2>().0[m * face + point]);
+            }
             store_array(riemann.lifted(&minus, &plus, normal, &medium, length), &mut lift[point]);
         }
     }
@@ -175,12 +191,12 @@ impl Meter<'_, '_> {
         let factor = place.stage.dt * scheme.weight(place.stage.number);
         let normal = metric.normal(face);
         let mut medium = place.medium().splat::<L>();
-        if R::TURNS {
+        if R::LOOKS == Looks::Displacement {
             medium.turn = turn::<L, _, W>(sides.own.as_chunks::<W>().0, sides.other, scheme.span());
         }
         let weights = &scheme.operators.line.basis.weights[..scheme.operators.line.m];
         for (point, (own, weight)) in sides.own.as_chunks::<W>().0.iter().zip(weights).enumerate() {
-            let beyond = turned(sides.other.load::<L, W>(point));
+            let beyond = turned::<L, R, W>(sides.other.load::<L, W>(point));
             let minus = trace_of::<L, R, W>(&load_array::<L, W>(own));
             let plus = trace_of::<L, R, W>(&beyond);
             let (mut flux, mut there, mut scale) = ([F8::ZERO; 6], [F8::ZERO; W], F8::ZERO);
@@ -212,7 +228,7 @@ pub(super) fn lift(place: Place, traces: &Traces, nodes: &mut Arrays, mut books:
     let Place { scheme, block, .. } = place;
     let (blocks, m) = (&scheme.operators.blocks, scheme.operators.line.m);
     let (flux, metered) = (scheme.flux, books.sums.is_some());
-    let width = width(flux.has_shear(), metered);
+    let width = width(flux.looks(), metered);
     let length = m * width;
     let plan = &blocks.plan[block];
     let mut other = [Beyond::Aligned(Aligned(&[])); 4];
@@ -239,11 +255,13 @@ pub(super) fn lift(place: Place, traces: &Traces, nodes: &mut Arrays, mut books:
         span: scheme.span(),
         medium,
         lift: &mut nodes.lift,
+        held: &mut nodes.held,
     });
     for face in 0..4 {
         let sides = Sides { face, own: &own[face * length..][..length], other: &other[face] };
         if plan[face].special {
-            place.put_right(sides, &mut nodes.lift[6 * m * face..6 * m * (face + 1)], &mut books);
+            let held = &mut nodes.held[2 * m * face..2 * m * (face + 1)];
+            place.put_right(sides, &mut nodes.lift[6 * m * face..6 * m * (face + 1)], held, &mut books);
         }
         if let Some(sums) = &mut books.sums {
             scheme.kernel.run(Meter { place, sides, sums });
@@ -272,13 +290,15 @@ impl<'a> Place<'a> {
 
     /// The lifted numbers of lanes at a boundary or at another material, in `lift`, [point][6]; what passes the boundary into
     /// `books`.
-    fn put_right(&self, sides: Sides, lift: &mut [F8], books: &mut Books) {
+    fn put_right(&self, sides: Sides, lift: &mut [F8], held: &mut [F8], books: &mut Books) {
         let line = &self.scheme.operators.line;
         let (face, width) = (sides.face, sides.own.len() / line.m);
         let factor = self.stage.dt * self.scheme.weight(self.stage.number);
         for (point, (own, lift)) in sides.own.chunks_exact(width).zip(lift.as_chunks_mut::<6>().0).enumerate() {
             for lane in 0..LANES {
                 let Some(flux) = self.special(face, point, lane, own, sides.other) else { continue };
+                let between = self.held_between(face, point, lane, own, sides.other);
+                (0..2).for_each(|k| held[2 * point + k].0[lane] = between[k]);
                 let metric = self.metric().lane(lane);
                 let (normal, length) = (metric.normal(face), metric.length(face));
                 for (k, flux) in flux.iter().enumerate() {
@@ -308,7 +328,7 @@ impl<'a> Place<'a> {
         let at = self.face_point(face, point, lane);
         let trace = |x: &dyn Fn(usize) -> f64, sign: f64, law: &Law| {
             let f = [x(0), x(1), x(2), x(3)];
-            let c = if self.scheme.flux.has_shear() { [x(8), x(9)] } else { law.speeds(f, at.normal) };
+            let c = if self.scheme.flux.looks() == Looks::Shear { [x(8), x(9)] } else { law.speeds(f, at.normal) };
             Trace { f, v: [x(4), x(5)], t: [sign * x(6), sign * x(7)], c }
         };
         let minus = trace(&|k| own[k].0[lane], 1.0, law);
@@ -320,6 +340,19 @@ impl<'a> Place<'a> {
                 Some(interface(&minus, &plus, at.normal, [law.density(), beyond.density()]))
             }
             Neighbour::Cell(_) | Neighbour::Padding => None,
+        }
+    }
+
+    /// What is held in a lane at a boundary, nothing, or between two laws.
+    fn held_between(&self, face: usize, point: usize, lane: usize, own: &[F8], other: &Beyond) -> [f64; 2] {
+        let neighbour = &self.scheme.operators.blocks.neighbours[self.block][face][lane];
+        match (self.scheme.flux.looks(), neighbour) {
+            (Looks::Displacement, Neighbour::Interface(_, material)) => {
+                let there: [f64; 11] = std::array::from_fn(|k| other.number(point, k, own.len(), lane));
+                let here: [f64; 11] = std::array::from_fn(|k| own[k].0[lane]);
+                held(&here, &there, [self.law().density(), self.scheme.laws[*material].density()])
+            }
+            _ => [0.0; 2],
         }
     }
 

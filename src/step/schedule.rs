@@ -317,7 +317,7 @@ impl Scheme {
 
     /// Numbers of the traces of a block.
     fn block_traces(&self, metered: bool) -> usize {
-        4 * self.operators.line.m * volume::width(self.flux.has_shear(), metered)
+        4 * self.operators.line.m * volume::width(self.flux.looks(), metered)
     }
 
     /// Bytes of the traces of all faces, without the balance.

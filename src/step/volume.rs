@@ -7,7 +7,7 @@ use super::survey::Worst;
 use crate::lane::{F8, Lane, Lanes, Twin, Work, load_array, store_array, twins};
 use crate::material::{Law, Material};
 use crate::operators::{Line, Metric, determinant};
-use crate::riemann::tangent;
+use crate::riemann::{Looks, tangent};
 use crate::tensor;
 use crate::with_law;
 
@@ -32,10 +32,15 @@ macro_rules! with_nodes {
 }
 pub(super) use with_nodes;
 
-/// Numbers of a trace: F, v, t, c_p, then c_s where the flux is one that looks at it (`shear`), then s = P T where the
-/// balance is on (`metered`).
-pub const fn width(shear: bool, metered: bool) -> usize {
-    9 + shear as usize + 2 * metered as usize
+/// Numbers of a trace: F, v, t, c_p, then c_s or u where the flux is one that looks at it, then s = P T where the balance is on
+/// (`metered`).
+pub const fn width(looks: Looks, metered: bool) -> usize {
+    let more = match looks {
+        Looks::Nothing => 0,
+        Looks::Shear => 1,
+        Looks::Displacement => 2,
+    };
+    9 + more + 2 * metered as usize
 }
 
 /// Arrays of one block at its nodes.
@@ -51,8 +56,12 @@ pub struct Arrays {
     contravariant: Vec<F8>,
     /// Sources b, averaged over time, [2][node].
     pub source: Vec<F8>,
+    /// Averages of u, [node][2], where the flux looks at it.
+    pub place: Vec<F8>,
     /// Lifted numbers: [face][face point][6].
     pub lift: Vec<F8>,
+    /// Lifted by the traces of what is held: [face][face point][2].
+    pub held: Vec<F8>,
     /// The mass matrix, by node, where it is wanted.
     pub masses: Vec<F8>,
     /// Rows of F in the weighted inner product, and their coefficients, for the curl-free projection.
@@ -72,7 +81,9 @@ impl Arrays {
             mean_stress: zeros(4 * n),
             contravariant: zeros(4 * n),
             source: zeros(2 * n),
+            place: zeros(2 * n),
             lift: zeros(4 * 6 * m),
+            held: zeros(4 * 2 * m),
             masses: zeros(n),
             weighted: zeros(4 * n),
             coefficients: zeros(4 * n),
@@ -241,6 +252,8 @@ pub struct Traces<'a, const M: usize, const METERED: bool> {
     pub arrays: &'a Arrays,
     /// Numbers of a trace, see [`width`].
     pub width: usize,
+    /// Whether u is among them.
+    pub placed: bool,
     /// [face][point][`width`], out.
     pub traces: &'a mut [F8],
 }
@@ -263,7 +276,7 @@ impl<const M: usize, const METERED: bool> Traces<'_, M, METERED> {
     /// Those of a face that xi1 runs towards (FIRST), or xi2.
     #[inline(always)]
     fn of_face<L: Lanes, const FIRST: bool>(&mut self, face: usize, normal: [L; 2]) {
-        let ends = row::<M>(&self.line.ends[face % 2]);
+        let (ends, held) = (row::<M>(&self.line.ends[face % 2]), row::<M>(&self.line.held[face % 2]));
         let mean = &self.arrays.mean.as_chunks::<6>().0[..M * M];
         let mean_stress = &self.arrays.mean_stress.as_chunks::<4>().0[..M * M];
         let width = self.width;
@@ -276,6 +289,10 @@ impl<const M: usize, const METERED: bool> Traces<'_, M, METERED> {
                 store_array(tensor::times(stress, tangent(normal)), &mut out[width - 2..]);
             }
             store_array(line_sum::<L, M, 6, 6>(&ends, nodes_of(mean, first, stride), 0), &mut out[..6]);
+            if self.placed {
+                let place = &self.arrays.place.as_chunks::<2>().0[..M * M];
+                store_array(line_sum::<L, M, 2, 2>(&held, nodes_of(place, first, stride), 0), &mut out[9..11]);
+            }
         }
     }
 }
@@ -289,8 +306,8 @@ pub struct Speeds<'a> {
     pub metric: &'a Metric<F8>,
     /// Numbers of a trace, see [`width`].
     pub width: usize,
-    /// Whether c_s is wanted.
-    pub shear: bool,
+    /// What the flux looks at.
+    pub looks: Looks,
     /// [face][point][`width`]; F in, c out.
     pub traces: &'a mut [F8],
     /// The worst of the blocks so far, which the smallest J of the traces goes to, and the number of real cells of this one;
@@ -306,11 +323,13 @@ impl Work for Speeds<'_> {
         let smallest = with_law!(self.law, law => {
             // A copy: what is stored below cannot change it, so its constants stay in registers.
             let law = *law;
-            match (self.shear, self.width == width(self.shear, true)) {
-                (false, false) => self.of_pressure::<L, _, { width(false, false) }>(law),
-                (false, true) => self.of_pressure::<L, _, { width(false, true) }>(law),
-                (true, false) => self.of_both::<L, _, { width(true, false) }>(law),
-                (true, true) => self.of_both::<L, _, { width(true, true) }>(law),
+            match (self.looks, self.width == width(self.looks, true)) {
+                (Looks::Nothing, false) => self.of_pressure::<L, _, { width(Looks::Nothing, false) }>(law),
+                (Looks::Nothing, true) => self.of_pressure::<L, _, { width(Looks::Nothing, true) }>(law),
+                (Looks::Shear, false) => self.of_both::<L, _, { width(Looks::Shear, false) }>(law),
+                (Looks::Shear, true) => self.of_both::<L, _, { width(Looks::Shear, true) }>(law),
+                (Looks::Displacement, false) => self.of_pressure::<L, _, { width(Looks::Displacement, false) }>(law),
+                (Looks::Displacement, true) => self.of_pressure::<L, _, { width(Looks::Displacement, true) }>(law),
             }
         });
         match self.worst {
