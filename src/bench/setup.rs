@@ -142,9 +142,9 @@ impl Setup {
         let layouts = ["jitter", "random", "cluster", "poisson-disk", "rotated"];
         let random = self.method == Method::AderDgmpm && self.layout.as_deref().is_some_and(|l| layouts.contains(&l));
         // State, its start, its copy at the end, the next one, the numbers before they are packed; rates.
-        let unknowns = UNKNOWNS * n * (5 + stages);
-        // A trace has at most ten numbers.
-        let geometry = 6 * n + 4 * m * 10 + 6 * np;
+        let unknowns = (UNKNOWNS + 2) * n * (5 + stages);
+        // A trace has at most eleven numbers.
+        let geometry = 6 * n + 4 * m * 11 + 6 * np;
         // One copy of each class while they are built, one in blocks.
         let own = 2 * (usize::from(random) * (2 * n * np + 2 * np * np) + usize::from(files) * 2 * n * n);
         MESH + 8 * (unknowns + geometry + own)

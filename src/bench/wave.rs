@@ -3,7 +3,7 @@
 use crate::error::{Error, Place, Result};
 use crate::exact::Exact;
 use crate::mesh::{Mesh, map};
-use crate::state::{State, UNKNOWNS};
+use crate::state::State;
 use crate::step::Scheme;
 use std::collections::HashMap;
 use std::path::Path;
@@ -97,8 +97,9 @@ impl Wave {
     pub fn state(&self, mesh: &Mesh, scheme: &Scheme) -> State {
         let (basis, n) = (&scheme.operators.line.basis, scheme.operators.nodes());
         let density = scheme.laws[0].density();
-        let mut cells = vec![0.0; mesh.cells.len() * UNKNOWNS * n];
-        for (cell, values) in cells.chunks_mut(UNKNOWNS * n).enumerate() {
+        let components = scheme.flux.components();
+        let mut cells = vec![0.0; mesh.cells.len() * components * n];
+        for (cell, values) in cells.chunks_mut(components * n).enumerate() {
             let corners = mesh.corners(cell);
             for a in 0..n {
                 let (f, v) = self.at(map::position(&corners, basis.node_2d(a)), 0.0);
@@ -106,7 +107,7 @@ impl Wave {
                 u.into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
             }
         }
-        State::pack(&scheme.operators.blocks, n, UNKNOWNS, &cells)
+        State::pack(&scheme.operators.blocks, n, components, &cells)
     }
 }
 

@@ -179,7 +179,11 @@ impl Case<'_> {
     fn flux(&self) -> Option<String> {
         let flux = self.scene.scheme.flux;
         let why = match flux {
-            Flux::Dual => return None,
+            Flux::Dual if self.has_memory() => return None,
+            Flux::Dual => {
+                let why = "damps all jumps of F, and holds some corners that are crushed";
+                return Some(format!("scheme.flux = \"rusanov\" {why}"));
+            }
             _ if self.has_memory() => "makes energy in plastic flow",
             Flux::Rusanov => "makes energy in large motions of a nearly incompressible body",
             _ => "holds less in compression",

@@ -14,6 +14,7 @@ pub use rusanov::Rusanov;
 
 use crate::lane::Lane;
 use crate::material::Law;
+use crate::state::UNKNOWNS;
 use crate::tensor;
 
 /// What a cell shows at a point of its face.
@@ -138,6 +139,11 @@ names! {
 }
 
 impl Flux {
+    /// Components of the state that it needs: with the displacement where it looks at it.
+    pub fn components(self) -> usize {
+        if self.looks() == Looks::Displacement { UNKNOWNS + 2 } else { UNKNOWNS }
+    }
+
     /// What it looks at.
     pub fn looks(self) -> Looks {
         fn looks<R: Riemann>(_: &R) -> Looks {

@@ -13,7 +13,6 @@ use crate::material::Law;
 use crate::mesh::{self, Link, Mesh};
 use crate::observe::{Contents, Field, Ledger, Line, Observer, Outside, Samples, Schedule, Snapshots};
 use crate::operators::{Needs, Operators, Sampling};
-use crate::riemann::Looks;
 use crate::run::{Folder, Settings};
 use crate::source::{self, BodyForce};
 use crate::state::{State, UNKNOWNS};
@@ -251,8 +250,7 @@ impl Scene {
 
     /// Components of the state: with the displacement where an output asks for it or the flux looks at it.
     pub(super) fn components(&self) -> usize {
-        let carried = self.wants_displacement() || self.scheme.flux.looks() == Looks::Displacement;
-        if carried { UNKNOWNS + 2 } else { UNKNOWNS }
+        if self.wants_displacement() { UNKNOWNS + 2 } else { self.scheme.flux.components() }
     }
 
     /// dt c / h and the end.

@@ -115,7 +115,7 @@ impl Setup {
         let needs = scene.needs(&cloud);
         let operators = Operators::build(&mesh, &scene.links(&mesh)?, &scene.material_of_cells(&mesh), &needs)?;
         let scheme = scene.build_scheme(&mesh, operators, Kernel::widest());
-        let state = scene.initial_state(&mesh, &scheme)?;
+        let state = without_displacement(&scheme, scene.initial_state(&mesh, &scheme)?);
         Problem::new(mesh, scheme, state, scene, (unit, units), (courant, known_limit))
     }
 
@@ -195,6 +195,16 @@ impl Setup {
         scene.check_groups(&mesh.groups, &mesh.edge_groups)?;
         Ok((mesh, unit, units))
     }
+}
+
+/// The state without the displacement. What holds its jumps ([`crate::riemann::hold`]) only exchanges energy with the springs of the
+/// faces, and a displacement without jumps is a neutral mode of its own; both are left out.
+fn without_displacement(scheme: &Scheme, state: State) -> State {
+    let (blocks, n) = (&scheme.operators.blocks, scheme.operators.nodes());
+    let all = state.unpack(blocks, n);
+    let cells: Vec<f64> = all.chunks(state.components * n).flat_map(|cell| &cell[..UNKNOWNS * n]).copied().collect();
+    let State { time, step, internal, .. } = state;
+    State { time, step, internal, ..State::pack(blocks, n, UNKNOWNS, &cells) }
 }
 
 /// The points of the cells of one unit in all units of a patch, which is the same everywhere then.
