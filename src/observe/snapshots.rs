@@ -56,7 +56,11 @@ pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
         u.extend_from_slice(unknowns);
         displacement.extend_from_slice(others);
     }
+    let unheld = match state.unheld.is_empty() {
+        true => vec![],
+        false => scheme.operators.blocks.unpack(&state.unheld, 2 * n),
+    };
     let internal = scheme.internal_of(state);
     let (time, step, degree) = (state.time, state.step, scheme.operators.degree);
-    Snapshot { time, step, degree, u, displacement, internal, ..Snapshot::default() }
+    Snapshot { time, step, degree, u, displacement, unheld, internal, ..Snapshot::default() }
 }

@@ -27,6 +27,7 @@ impl Scene {
             }
         }
         let mut state = State { time: self.start, ..State::pack(&scheme.operators.blocks, n, components, &cells) };
+        state = state.holding_from_now(n);
         if !scheme.histories.is_empty() {
             scheme.set_internal(&mut state, &self.internal_of_points(mesh, scheme, &given)?);
         }

@@ -35,7 +35,8 @@ impl Scene {
         // Where no output asks for it, the displacement may count from here: what is held are jumps that come now.
         let components = self.components();
         let state = State::pack(&scheme.operators.blocks, n, components, &snapshot.unknowns(components));
-        let mut state = State { time: snapshot.time, step: snapshot.step, ..state };
+        let unheld = scheme.operators.blocks.pack(&snapshot.unheld, snapshot.unheld_stride(), |_| 0.0);
+        let mut state = State { time: snapshot.time, step: snapshot.step, unheld, ..state };
         if snapshot.internal.len() != scheme.virgin_internal().len() {
             let what = "the snapshot has the internal variables of other laws or points".to_owned();
             return Err(fail(what, "give the materials and the cloud of that run"));

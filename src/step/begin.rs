@@ -109,7 +109,7 @@ impl Work for Extras<'_, '_> {
 }
 
 /// u at the nodes, averaged as F and v are: of the stage by Runge-Kutta, u^n + dt/2 v by ADER, which is what the mean over the step is
-/// to second order; 0 where the displacement is not carried.
+/// to second order; 0 where the displacement is not carried. Less what is not held ([`State::unheld`]).
 struct Place<'a, 'b>(&'a mut Block<'b>);
 
 impl Work for Place<'_, '_> {
@@ -124,6 +124,7 @@ impl Work for Place<'_, '_> {
             place.fill([F8::ZERO; 2]);
             return;
         }
+        let unheld = block.state.unheld.chunks_exact(2 * n).nth(block.block);
         let own = UNKNOWNS * n..(UNKNOWNS + 2) * n;
         let start = &block.state.u[stride * block.block..][own.clone()];
         match &block.scheme.method {
@@ -147,6 +148,13 @@ impl Work for Place<'_, '_> {
                             factor.mul_add(L::load(&rate[k * n + a]), L::load(&place[k])).store(&mut place[k]);
                         }
                     }
+                }
+            }
+        }
+        if let Some(unheld) = unheld {
+            for (a, place) in place.iter_mut().enumerate() {
+                for k in 0..2 {
+                    (L::load(&place[k]) - L::load(&unheld[k * n + a])).store(&mut place[k]);
                 }
             }
         }

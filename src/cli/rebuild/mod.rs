@@ -138,7 +138,7 @@ impl<'a> Regrids<'a> {
         let scheme = pipeline::scheme(self.scene, &body, operators, self.kernel);
         regrid::curl_free(&scheme, state.components, &moved.same, &mut moved.u);
         let new = State::pack(&scheme.operators.blocks, n, state.components, &moved.u);
-        let mut new = State { time: state.time, step: state.step, ..new };
+        let mut new = State { time: state.time, step: state.step, ..new }.holding(state, &moved.same, n);
         let before = (grid(&old.body.mesh, &old.body.material), &old.body.cloud, &old.scheme);
         let after = (grid(&body.mesh, &body.material), &scheme);
         let internal = internal(before, state, after, &moved.same, &placed)?;
