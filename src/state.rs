@@ -9,7 +9,7 @@ pub const UNKNOWNS: usize = 6;
 /// The grid unknowns at the Gauss nodes, the master copy between steps.
 ///
 /// Layout: `[block][component][node]`, node a = i M + j with i along xi1. Components are the six of U and, where an
-/// output asks for it, the displacement u1, u2 (m), which no flux touches: du/dt = v.
+/// output asks for it or the flux holds its jumps ([`crate::riemann::hold`]), the displacement u1, u2 (m): du/dt = v.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     /// Time t, s.
