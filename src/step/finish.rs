@@ -210,11 +210,11 @@ impl<const M: usize> Work for Lift<'_, M> {
             }
         }
         for (k, rate) in self.rate.chunks_exact_mut(n).enumerate().take(6) {
-            for i in 0..M {
-                for j in 0..M {
+            for (i, inverse) in inverse.iter().enumerate() {
+                for (j, inverse) in inverse.iter().enumerate() {
                     let a = i * M + j;
                     let sum = at_node::<L, 6, M>(lift, &ends, [i, j], k);
-                    ((L::load(&rate[a]) - sum) * inverse[i][j]).store(&mut rate[a]);
+                    ((L::load(&rate[a]) - sum) * *inverse).store(&mut rate[a]);
                 }
             }
         }
@@ -222,11 +222,11 @@ impl<const M: usize> Work for Lift<'_, M> {
         let ends = [row::<M>(&self.line.held_lift[0]), row::<M>(&self.line.held_lift[1])];
         let held = &held.as_chunks::<2>().0[..4 * M];
         for (k, rate) in self.rate[4 * n..6 * n].chunks_exact_mut(n).enumerate() {
-            for i in 0..M {
-                for j in 0..M {
+            for (i, inverse) in inverse.iter().enumerate() {
+                for (j, inverse) in inverse.iter().enumerate() {
                     let a = i * M + j;
                     let sum = at_node::<L, 2, M>(held, &ends, [i, j], k);
-                    (-inverse[i][j]).mul_add(sum, L::load(&rate[a])).store(&mut rate[a]);
+                    (-*inverse).mul_add(sum, L::load(&rate[a])).store(&mut rate[a]);
                 }
             }
         }
