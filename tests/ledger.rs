@@ -202,7 +202,8 @@ fn the_balance_is_there_only_where_a_ledger_asks_for_it_and_changes_no_energy() 
         let text = std::fs::read_to_string(outcome.path().join("ledger.csv")).unwrap();
         text.lines().next().unwrap().split(',').map(str::to_owned).collect::<Vec<_>>()
     };
-    let always = "step t dt kinetic_energy strain_energy total_energy momentum_1 momentum_2 min_j max_curl_f c_max";
+    let always = "step t dt kinetic_energy strain_energy total_energy momentum_1 momentum_2 min_j max_curl_f c_max \
+                  max_drift";
     let more =
         "boundary_work source_work flux_dissipation boundary_dissipation curl_dissipation remainder angular_momentum";
     for method in METHODS {
@@ -212,7 +213,7 @@ fn the_balance_is_there_only_where_a_ledger_asks_for_it_and_changes_no_energy() 
             let off = of(&scene, method, 2, &[off]);
             assert_eq!(columns(&off).join(" "), always);
             assert!(off.summary["balance"].is_null());
-            for key in ["kinetic_energy", "strain_energy", "min_j", "max_curl_f"] {
+            for key in ["kinetic_energy", "strain_energy", "min_j", "max_curl_f", "max_drift"] {
                 assert_eq!(on.number(key).to_bits(), off.number(key).to_bits(), "{method} {key}");
             }
         }

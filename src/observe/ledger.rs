@@ -20,6 +20,9 @@ const COLUMNS: [&str; 11] = [
     "c_max",
 ];
 
+/// Behind those, where the displacement is known: what F and the shape differ by, [`Totals::max_drift`].
+const DRIFT: &str = "max_drift";
+
 /// Behind those, where a law has memory: what plastic flow has dissipated since the material was virgin.
 const PLASTIC: &str = "plastic_dissipation";
 
@@ -40,6 +43,8 @@ const BALANCE: [&str; 7] = [
 /// What a ledger has beside energy, momentum and health.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Contents {
+    /// What F and the shape differ by.
+    pub drift: bool,
     /// What plastic flow has dissipated.
     pub plastic: bool,
     /// The columns of [`Balance`].
@@ -61,8 +66,9 @@ impl Ledger {
     /// # Errors
     /// Where the file cannot be made.
     pub fn create(path: &Path, schedule: Schedule, contents: Contents) -> Result<Self, Error> {
-        let Contents { plastic, balance, regrids } = contents;
+        let Contents { drift, plastic, balance, regrids } = contents;
         let mut columns = COLUMNS.to_vec();
+        columns.extend(drift.then_some(DRIFT));
         columns.extend(plastic.then_some(PLASTIC));
         columns.extend(BALANCE.iter().filter(|_| balance));
         columns.extend((balance && regrids).then_some(REGRIDS));
@@ -107,6 +113,7 @@ impl Observer for Ledger {
             totals.max_curl,
             view.survey.fastest,
         ];
+        row.extend(self.contents.drift.then(|| totals.max_drift.unwrap_or(f64::NAN)));
         row.extend(self.contents.plastic.then(|| totals.plastic.unwrap_or(0.0)));
         if let Some(balance) = view.balance.filter(|_| self.contents.balance) {
             row.extend(columns(balance, &totals));

@@ -167,6 +167,9 @@ impl Report {
             ("min_j", json!(self.min_j)),
             ("max_curl_f", json!(last.max_curl)),
         ];
+        if let Some(drift) = last.max_drift {
+            pairs.push(("max_drift", json!(drift)));
+        }
         if let Some(plastic) = last.plastic {
             pairs.push(("plastic_dissipation", json!(plastic)));
         }

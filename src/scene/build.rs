@@ -304,7 +304,8 @@ impl Scene {
     pub fn observers(&self, mesh: &Mesh, folder: &Folder) -> Result<Vec<Box<dyn Observer>>> {
         let material = self.material_of_cells(mesh);
         let plastic = self.build_laws().iter().any(|law| !law.internal().is_empty());
-        let contents = Contents { plastic, regrids: !self.regrids.is_empty(), balance: false };
+        let drift = self.components() > UNKNOWNS;
+        let contents = Contents { drift, plastic, regrids: !self.regrids.is_empty(), balance: false };
         let mut out: Vec<Box<dyn Observer>> = Vec::new();
         for output in &self.outputs {
             let schedule = schedule(output);

@@ -30,6 +30,9 @@ pub struct Totals {
     pub min_j: f64,
     /// Largest |dF_i2/dX_1 - dF_i1/dX_2| at the nodes, 1/m.
     pub max_curl: f64,
+    /// The largest over the cells of sqrt(int |grad u - (F - 1)|^2 dX / int dX), what F and the shape differ by; only where the
+    /// displacement is known. (Of a body that starts strained, with a displacement that counts from there, it holds that strain.)
+    pub max_drift: Option<f64>,
 }
 
 /// Energy that was made out of nothing.
@@ -56,12 +59,18 @@ impl Totals {
         deformation: [0.0; 4],
         min_j: f64::INFINITY,
         max_curl: 0.0,
+        max_drift: None,
     };
 
     /// No cell yet of a state with or without displacement and memory.
     fn empty(state: &State) -> Self {
-        let angular_momentum = state.has_displacement().then_some(0.0);
-        Totals { angular_momentum, plastic: (!state.internal.is_empty()).then_some(0.0), ..Totals::EMPTY }
+        let known = state.has_displacement().then_some(0.0);
+        Totals {
+            angular_momentum: known,
+            max_drift: known,
+            plastic: (!state.internal.is_empty()).then_some(0.0),
+            ..Totals::EMPTY
+        }
     }
 
     /// Kinetic and strain energy, J/m.
@@ -83,6 +92,7 @@ impl Totals {
         self.deformation.iter_mut().zip(other.deformation).for_each(|(a, b)| *a += b);
         self.min_j = self.min_j.min(other.min_j);
         self.max_curl = self.max_curl.max(other.max_curl);
+        self.max_drift = self.max_drift.zip(other.max_drift).map(|(a, b)| a.max(b));
     }
 }
 
@@ -111,6 +121,7 @@ impl Scheme {
         let u = &state.u[block * state.components * n..];
         let memory = !law.internal().is_empty();
         let mut sum = Totals::empty(state);
+        let (mut drift, mut area) = (0.0, 0.0);
         for (a, mass) in self.operators.geometry.masses(&self.operators.line, block, lane).enumerate() {
             let [f11, f12, f21, f22, p1, p2]: [f64; 6] = std::array::from_fn(|k| u[k * n + a].0[lane]);
             let f = [f11, f12, f21, f22];
@@ -123,8 +134,19 @@ impl Scheme {
                 deformation: f.map(|x| mass * x),
                 min_j: tensor::det(f),
                 max_curl: self.curl(u, block, lane, a),
+                max_drift: sum.max_drift,
             });
+            area += mass;
+            if state.has_displacement() {
+                let [one, two] = [6, 7].map(|component| self.gradient(u, block, lane, a, component));
+                drift += mass
+                    * [one[0] - f11 + 1.0, one[1] - f12, two[0] - f21, two[1] - f22 + 1.0]
+                        .map(|d| d * d)
+                        .iter()
+                        .sum::<f64>();
+            }
         }
+        sum.max_drift = sum.max_drift.map(|_| (drift / area).sqrt());
         sum
     }
 
@@ -174,17 +196,20 @@ impl Scheme {
     }
 
     /// Larger of the two rows' |dF_i2/dX_1 - dF_i1/dX_2| at node a.
-    fn curl(&self, u: &[crate::lane::F8], block: usize, lane: usize, a: usize) -> f64 {
+    fn curl(&self, u: &[F8], block: usize, lane: usize, a: usize) -> f64 {
+        let of = |component: usize| self.gradient(u, block, lane, a, component);
+        (of(1)[0] - of(0)[1]).abs().max((of(3)[0] - of(2)[1]).abs())
+    }
+
+    /// The gradient of a component of a block at node a.
+    fn gradient(&self, u: &[F8], block: usize, lane: usize, a: usize, component: usize) -> [f64; 2] {
         let (line, n) = (&self.operators.line, self.operators.nodes());
         let (m, i, j) = (line.m, a / line.m, a % line.m);
         let metric = self.operators.geometry.blocks[block].lane(lane);
         let (one, two) = (metric.cofactor1(line.basis.nodes[i]), metric.cofactor2(line.basis.nodes[j]));
-        let gradient = |component: usize, axis: usize| -> f64 {
-            let at = |node: usize| u[component * n + node].0[lane];
-            let along1: f64 = (0..m).map(|k| line.slope[i * m + k] * at(k * m + j)).sum();
-            let along2: f64 = (0..m).map(|k| line.slope[j * m + k] * at(i * m + k)).sum();
-            (along1 * one[axis] + along2 * two[axis]) / determinant(one, two)
-        };
-        (gradient(1, 0) - gradient(0, 1)).abs().max((gradient(3, 0) - gradient(2, 1)).abs())
+        let at = |node: usize| u[component * n + node].0[lane];
+        let along1: f64 = (0..m).map(|k| line.slope[i * m + k] * at(k * m + j)).sum();
+        let along2: f64 = (0..m).map(|k| line.slope[j * m + k] * at(i * m + k)).sum();
+        [0, 1].map(|axis| (along1 * one[axis] + along2 * two[axis]) / determinant(one, two))
     }
 }

@@ -166,7 +166,7 @@ fn a_run_folder_holds_what_the_design_names() {
     let summary = bench.summary("runs/case");
     let keys = "method degree time_degree cells points dofs steps dt_min dt_max end_time threads cpu_seconds \
         wall_seconds phases dof_updates_per_second peak_memory_mib kinetic_energy strain_energy total_energy_ratio \
-        momentum min_j max_curl_f norms status";
+        momentum min_j max_curl_f max_drift norms status";
     for key in keys.split_whitespace() {
         assert!(!summary[key].is_null(), "{key}: {summary:#}");
     }
