@@ -2,11 +2,12 @@
 //! location of a million points.
 //! (Seconds of the phases inside of a step are what `dgmpm bench` prints.)
 
-use dgmpm::bench::{Domain, Problem, Setup};
+use dgmpm::bench::{Domain, Setup};
 use dgmpm::cloud::{Locator, Pattern, from_points};
 use dgmpm::lane::{F8, Kernel, Lanes, Work, load_array, store_array};
 use dgmpm::material::{Law, LinearElastic, Material, NeoHookean};
 use dgmpm::mesh::map;
+use dgmpm::problem::Problem;
 use dgmpm::riemann::{Acoustic, AcousticCurl, Medium, Riemann, Rusanov, Trace};
 use dgmpm::scene::Method;
 use dgmpm::step::{Survey, Work as Memory};
@@ -119,7 +120,8 @@ fn step(bencher: Bencher, method: Method, layout: Option<&str>, degree: usize) {
     let layout = layout.map(str::to_owned);
     let (domain, law, kernel) = (Domain::Cells([8, 8]), "neo-hookean".to_owned(), Kernel::widest());
     let setup = Setup { method, degree, domain, layout, law, kernel, sets: vec![] };
-    let Problem { scheme, start, settings, h, .. } = setup.build().expect("the wave on a lattice is a valid problem");
+    let subject = setup.build().expect("the wave on a lattice is a valid problem");
+    let (Problem { scheme, state: start, settings, .. }, h) = (subject.problem, subject.h);
     let (mut work, mut survey) = (Memory::new(&scheme, &start), Survey::default());
     scheme.survey(&start, &work, &mut survey).expect("the wave is healthy");
     let dt = settings.courant * h / survey.fastest;

@@ -71,6 +71,7 @@ pub mod observe;
 pub mod run;
 pub mod exact;
 pub mod scene;
+pub mod problem;
 pub mod stability;
 pub mod study;
 pub mod bench;

@@ -32,7 +32,7 @@ fn star_states_of_the_riemann_problem_are_exact_by_all_methods() {
         let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/riemann.toml");
         let scene = Scene::load(&path, &sets).unwrap();
-        let (exact, steel) = (scene.build_exact().unwrap(), &scene.build_laws()[0]);
+        let (exact, steel) = (scene.build_exact().unwrap(), &scene.laws()[0]);
         let star = ([1.49, 0.0], 2e-4);
         let (v, p) = (exact.velocity(star.0, star.1)[0], steel.stress(exact.deformation(star.0, star.1))[0]);
         for method in METHODS {

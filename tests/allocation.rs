@@ -1,8 +1,7 @@
 //! A step allocates nothing: a counting allocator stands in this program, and a scheme that has done its first steps takes
 //! more with boundaries of every kind, data that depends on time and a source.
 
-use dgmpm::lane::Kernel;
-use dgmpm::operators::Operators;
+use dgmpm::problem::Problem;
 use dgmpm::scene::Scene;
 use dgmpm::state::State;
 use dgmpm::step::{Scheme, Survey, Work};
@@ -105,18 +104,12 @@ impl Run {
     fn warm(sets: &[&str]) -> Self {
         let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
         let scene = Scene::parse(SCENE, Path::new("allocation.toml"), &sets).unwrap();
-        let mesh = scene.build_mesh().unwrap();
-        let cloud = scene.build_cloud(&mesh).unwrap();
-        let material = scene.material_of_cells(&mesh);
-        let links = scene.links(&mesh).unwrap();
-        let operators = Operators::build(&mesh, &links, &material, &scene.needs(&cloud)).unwrap();
-        let scheme = scene.build_scheme(&mesh, operators, Kernel::widest());
-        let state = scene.initial_state(&mesh, &scheme).unwrap();
+        let Problem { scheme, state, settings, .. } = Problem::new(&scene).unwrap();
         assert!(state.has_displacement() && !scheme.sources.is_empty());
         let (work, survey) = (Work::new(&scheme, &state), Survey::default());
         let mut run = Self { scheme, state, work, next: survey.clone(), survey, dt: 0.0 };
         run.scheme.survey(&run.state, &run.work, &mut run.survey).unwrap();
-        run.dt = 0.5 * scene.settings().unwrap().courant / 24.0 / run.survey.fastest;
+        run.dt = 0.5 * settings.courant / 24.0 / run.survey.fastest;
         (0..3).for_each(|_| run.step());
         run
     }

@@ -6,7 +6,7 @@ use dgmpm::exact::{Exact, PlasticImpact};
 use dgmpm::io::snapshot::{self, Snapshot};
 use dgmpm::lane::{Kernel, as_f64};
 use dgmpm::material::{J2, Law};
-use dgmpm::operators::Operators;
+use dgmpm::problem::{Given, Problem, Setup};
 use dgmpm::scene::Scene;
 use dgmpm::state::State;
 use dgmpm::step::{Scheme, Survey, Work};
@@ -135,16 +135,11 @@ impl March {
     fn of(text: &str, sets: &[&str], kernel: Kernel) -> Self {
         let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
         let scene = Scene::parse(text, Path::new("cycles.toml"), &sets).unwrap();
-        let mesh = scene.build_mesh().unwrap();
-        let (cloud, material) = (scene.build_cloud(&mesh).unwrap(), scene.material_of_cells(&mesh));
-        let links = scene.links(&mesh).unwrap();
-        let places = scene.places(&cloud, &material);
-        let operators = Operators::build(&mesh, &links, &material, &scene.needs(&places)).unwrap();
-        let scheme = scene.build_scheme(&mesh, operators, kernel);
-        let state = scene.initial_state(&mesh, &scheme).unwrap();
+        let problem = Setup::of(&scene).kernel(kernel).build().unwrap();
+        let (courant, h) = (problem.settings.courant, problem.body.smallest_h());
+        let Problem { scheme, state, .. } = problem;
         let work = Work::new(&scheme, &state).with_balance(&scheme);
-        let h = scheme.operators.geometry.h().flat_map(|h| h.0).fold(f64::INFINITY, f64::min);
-        Self { scheme, state, work, survey: Survey::default(), courant: scene.settings().unwrap().courant, h }
+        Self { scheme, state, work, survey: Survey::default(), courant, h }
     }
 
     fn step(&mut self) {
@@ -315,7 +310,8 @@ kind = "symmetry"
 
 #[test]
 fn elastic_cells_hold_nothing_and_plastic_ones_what_their_points_need() {
-    let scene = Scene::parse(MIXED, Path::new("mixed.toml"), &[]).unwrap();
+    let at_points = ["cloud.histories=points".to_owned()];
+    let scene = Scene::parse(MIXED, Path::new("mixed.toml"), &at_points).unwrap();
     let mut mesh = dgmpm::mesh::rectangle([4.0, 5.0], [4, 5]).unwrap();
     mesh.groups = vec!["hard".to_owned(), "soft".to_owned()];
     (0..20).for_each(|cell| mesh.cell_group[cell] = usize::from(cell % 4 >= 2));
@@ -327,10 +323,9 @@ fn elastic_cells_hold_nothing_and_plastic_ones_what_their_points_need() {
         cloud.xi.extend(&extra[..cell % 3]);
         cloud.first.push(cloud.xi.len());
     }
-    let (material, links) = (scene.material_of_cells(&mesh), scene.links(&mesh).unwrap());
-    let operators = Operators::build(&mesh, &links, &material, &scene.needs(&cloud)).unwrap();
-    let scheme = scene.build_scheme(&mesh, operators, Kernel::widest());
-    let mut state = scene.initial_state(&mesh, &scheme).unwrap();
+    let given = Given { cloud: cloud.clone(), ..Given::default() };
+    let problem = Setup::of(&scene).mesh(mesh).points(given).build().unwrap();
+    let Problem { scheme, mut state, .. } = problem;
     let points: usize = (0..20).filter(|cell| cell % 4 >= 2).map(|cell| 4 + cell % 3).sum();
     let virgin = scheme.virgin_internal();
     assert_eq!((virgin.len(), scheme.internal_of(&state)), (5 * points, virgin.clone()));

@@ -5,9 +5,9 @@ use super::{Domain, Figures, Flops, Length, Measured, Peaks, Setup, count, measu
 use crate::chart::{Chart, Line, Marker, Scale, save};
 use crate::error::Result;
 use crate::io::pending::write_text;
+use crate::io::read_mesh;
 use crate::lane::Kernel;
 use crate::scene::Method;
-use crate::scene::build::read_mesh;
 use crate::study::machine;
 use std::path::{Path, PathBuf};
 

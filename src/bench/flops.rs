@@ -1,10 +1,11 @@
 //! Flops of one cell in one step, by phase, from the real kernels on counting lanes.
 
 use super::peaks::pool;
-use super::{Domain, Problem, Setup};
+use super::{Domain, Setup, Subject};
 use crate::error::Result;
 use crate::lane::Kernel;
 use crate::lane::counted::{self, Counts};
+use crate::problem::Problem;
 use crate::step::phase::PHASES;
 use crate::step::{Survey, Work};
 
@@ -40,13 +41,13 @@ pub fn count(setup: &Setup) -> Result<Flops> {
         Domain::Cells(_) => Domain::Cells(SMALL),
         file => file.clone(),
     };
-    let problem = Setup { domain, kernel: Kernel::Counting, ..setup.clone() }.build()?;
+    let subject = Setup { domain, kernel: Kernel::Counting, ..setup.clone() }.build()?;
     // Counts are kept by thread.
-    Ok(pool(1)?.install(|| count_step(&problem)))
+    Ok(pool(1)?.install(|| count_step(&subject)))
 }
 
-fn count_step(problem: &Problem) -> Flops {
-    let Problem { scheme, start, settings, h, .. } = problem;
+fn count_step(subject: &Subject) -> Flops {
+    let Subject { problem: Problem { scheme, state: start, settings, .. }, h, .. } = subject;
     let mut work = Work::new(scheme, start);
     let mut survey = Survey::default();
     // The wave at its start is healthy, and so after a stable step.

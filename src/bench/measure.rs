@@ -1,9 +1,10 @@
 //! Steps against the clock.
 
-use super::Problem;
+use super::Subject;
 use super::peaks::pool;
 use crate::error::{Error, Result};
 use crate::exact::errors;
+use crate::problem::Problem;
 use crate::run::dofs;
 use crate::state::State;
 use crate::step::phase::PHASES;
@@ -69,7 +70,7 @@ impl Measured {
 
 /// The steps of a problem and what they have cost so far.
 struct Clocked<'a> {
-    problem: &'a Problem,
+    subject: &'a Subject,
     state: State,
     survey: Survey,
     next: Survey,
@@ -83,13 +84,13 @@ struct Clocked<'a> {
 impl Clocked<'_> {
     /// Back to the start.
     fn rewind(&mut self) -> std::result::Result<(), Loss> {
-        self.state.clone_from(&self.problem.start);
-        self.problem.scheme.survey(&self.state, &self.work, &mut self.survey)
+        self.state.clone_from(&self.subject.problem.state);
+        self.subject.problem.scheme.survey(&self.state, &self.work, &mut self.survey)
     }
 
     /// One step and its survey; the last one of a wave ends at its end.
     fn step(&mut self) -> std::result::Result<(), Loss> {
-        let Problem { scheme, settings, h, .. } = self.problem;
+        let Subject { problem: Problem { scheme, settings, .. }, h, .. } = self.subject;
         let dt = (settings.courant * h / self.survey.fastest).min(settings.end - self.state.time);
         scheme.step(&self.state, dt, &self.survey, &mut self.work);
         scheme.surveyed(&mut self.work, &mut self.next)?;
@@ -103,7 +104,7 @@ impl Clocked<'_> {
 
     /// Whether the wave has run its way, to the rounding of its sum of steps.
     fn is_through(&self) -> bool {
-        self.state.time >= self.problem.settings.end * (1.0 - 1e-12)
+        self.state.time >= self.subject.problem.settings.end * (1.0 - 1e-12)
     }
 
     /// Timed steps until the wave is through or the length is reached; whether it is reached.
@@ -131,14 +132,15 @@ const UNKNOWN: Phases = Phases { seconds: [f64::INFINITY; PHASES] };
 ///
 /// # Errors
 /// Threads that cannot be started; a wave that loses stability.
-pub fn measure(problem: &Problem, threads: usize, length: Length) -> Result<Measured> {
+pub fn measure(subject: &Subject, threads: usize, length: Length) -> Result<Measured> {
     pool(threads)?.install(|| {
-        let work = Work::new(&problem.scheme, &problem.start);
+        let Problem { scheme, state, .. } = &subject.problem;
+        let work = Work::new(scheme, state);
         let (survey, zero) = (Survey::default(), Duration::ZERO);
-        let state = problem.start.clone();
+        let state = state.clone();
         let next = survey.clone();
         let mut clocked =
-            Clocked { problem, state, survey, next, work, quietest: UNKNOWN, steps: 0, cpu: zero, wall: zero };
+            Clocked { subject, state, survey, next, work, quietest: UNKNOWN, steps: 0, cpu: zero, wall: zero };
         let mut end = None;
         let outcome = steps(&mut clocked, length, &mut end);
         outcome.map_err(|loss| unstable(&loss, &clocked.state))?;
@@ -163,8 +165,9 @@ fn steps(clocked: &mut Clocked, length: Length, end: &mut Option<State>) -> std:
 }
 
 fn finish(clocked: Clocked, threads: usize, end: Option<&State>) -> Measured {
-    let Problem { scheme, mesh, wave, material, points, .. } = clocked.problem;
-    let error = errors(wave, mesh, scheme, end.unwrap_or(&clocked.state), material).standard;
+    let Subject { problem: Problem { scheme, body, .. }, wave, points, .. } = clocked.subject;
+    let mesh = &body.mesh;
+    let error = errors(wave, mesh, scheme, end.unwrap_or(&clocked.state), &body.material).standard;
     let phases = Phases { seconds: clocked.quietest.seconds.map(|s| s * clocked.steps as f64) };
     let state = size_of_val(&clocked.state.u[..]);
     Measured {

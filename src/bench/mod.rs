@@ -19,7 +19,7 @@ pub use campaign::Campaign;
 pub use flops::{Flops, count};
 pub use measure::{Length, Measured, measure};
 pub use peaks::{Peaks, peaks};
-pub use setup::{Domain, Problem, Setup};
+pub use setup::{Domain, Setup, Subject};
 pub use table::{Figures, oneline, report};
 pub use traffic::traffic;
 

@@ -4,12 +4,10 @@ use super::wave::{self, Wave};
 use crate::error::{Error, Result};
 use crate::lane::Kernel;
 use crate::mesh::{self, Mesh};
-use crate::operators::Operators;
-use crate::run::Settings;
+use crate::problem::{self, Problem};
 use crate::scene::{Method, Scene};
-use crate::state::{State, UNKNOWNS};
-use crate::step::{Scheme, Tableau};
-use crate::study::smallest_h;
+use crate::state::UNKNOWNS;
+use crate::step::Tableau;
 use std::path::{Path, PathBuf};
 
 /// The mesh of a measurement.
@@ -44,21 +42,13 @@ pub struct Setup {
 const MESH: usize = 500;
 
 /// A setup that is ready to step.
-pub struct Problem {
-    /// The mesh.
-    pub mesh: Mesh,
-    /// The law of each cell.
-    pub material: Vec<usize>,
+pub struct Subject {
+    /// Mesh, scheme and initial state.
+    pub problem: Problem,
     /// Number of material points; of nodes, where a method has none.
     pub points: usize,
-    /// The scheme.
-    pub scheme: Scheme,
-    /// The initial state.
-    pub start: State,
     /// The exact solution.
     pub wave: Wave,
-    /// Step, and the time at which the wave has run its way.
-    pub settings: Settings,
     /// min_e h_e, m.
     pub h: f64,
 }
@@ -68,21 +58,17 @@ impl Setup {
     ///
     /// # Errors
     /// Bad input; a size that this machine's memory cannot hold.
-    pub fn build(&self) -> Result<Problem> {
+    pub fn build(&self) -> Result<Subject> {
         let (mesh, scene) = self.mesh()?;
-        let settings = scene.settings()?;
-        let cloud = scene.sample(&mesh, scene.build_cloud(&mesh)?)?.cloud;
-        let material = scene.material_of_cells(&mesh);
-        let places = scene.places(&cloud, &material);
-        let operators = Operators::build(&mesh, &scene.links(&mesh)?, &material, &scene.needs(&places))?;
-        let scheme = scene.build_scheme(&mesh, operators, self.kernel);
         let exact = scene.build_exact().ok_or_else(|| Error::input("the scene has no [exact]", "keep that table"))?;
         let wave = Wave::new(exact);
-        let start = wave.state(&mesh, &scheme);
-        let nodes = mesh.cells.len() * scheme.operators.nodes();
-        let points = if scene.scheme.method == Method::AderDgmpm { places.len() } else { nodes };
-        let h = smallest_h(&mesh);
-        Ok(Problem { mesh, material, points, scheme, start, wave, settings, h })
+        let mut setup = problem::Setup::of(&scene).mesh(mesh).kernel(self.kernel);
+        let body = setup.body()?;
+        let problem = setup.build_from(body, |mesh, scheme| Ok(wave.state(mesh, scheme)))?;
+        let nodes = problem.body.mesh.cells.len() * problem.scheme.operators.nodes();
+        let points = if scene.scheme.method == Method::AderDgmpm { problem.places() } else { nodes };
+        let h = problem.body.smallest_h();
+        Ok(Subject { problem, points, wave, h })
     }
 
     /// The mesh, once it is known to fit, and the scene on it.
@@ -95,7 +81,7 @@ impl Setup {
                 Ok((mesh::rectangle(size, *cells)?, scene))
             }
             Domain::File(path) => {
-                let mesh = wave::periodic(crate::scene::build::read_mesh(path)?, path)?;
+                let mesh = wave::periodic(crate::io::read_mesh(path)?, path)?;
                 let scene = self.scene(wave::extent(&mesh))?;
                 self.check_memory(mesh.cells.len(), &scene)?;
                 Ok((mesh, scene))

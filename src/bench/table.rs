@@ -1,6 +1,6 @@
 //! A measurement as one line and as a table.
 
-use super::{Flops, Measured, Peaks, Problem, Setup, traffic};
+use super::{Flops, Measured, Peaks, Setup, Subject, traffic};
 use crate::step::phase::{NAMES, PHASES};
 
 /// A measurement with what it is set against.
@@ -20,8 +20,8 @@ pub struct Figures {
 
 impl Figures {
     /// Puts them together.
-    pub fn new(setup: &Setup, problem: &Problem, measured: Measured, flops: Flops, peaks: Peaks) -> Self {
-        Self { setup: setup.clone(), measured, flops, bytes: traffic(problem), peaks }
+    pub fn new(setup: &Setup, subject: &Subject, measured: Measured, flops: Flops, peaks: Peaks) -> Self {
+        Self { setup: setup.clone(), measured, flops, bytes: traffic(subject), peaks }
     }
 
     /// Flops per CPU second.

@@ -144,10 +144,10 @@ fn a_measurement_has_the_steps_it_was_asked_for_and_starts_anew_after_the_wave()
 #[test]
 fn traffic_of_rk2_is_what_its_sweeps_read_and_write() {
     let problem = setup(Method::RkDgfem, 1, "gauss").build().unwrap();
-    let operators = &problem.scheme.operators;
+    let operators = &problem.problem.scheme.operators;
     // U and the displacement; a trace with the flux dual: F, v, t, c_p, u.
     let (unknowns, traces) = (8.0 * 4.0 * 8.0, 4.0 * 2.0 * 11.0 * 8.0);
-    let cells = problem.mesh.cells.len() as f64;
+    let cells = problem.problem.body.mesh.cells.len() as f64;
     let geometry = (2 * operators.geometry.bytes() + operators.blocks.bytes()) as f64 / cells;
     let curl_free = operators.curl_free.as_ref().unwrap().bytes() as f64 / cells;
     // Two stages; one earlier rate in the second, two in the update; U in, U out.

@@ -1,14 +1,15 @@
 //! Bytes that a step must move where nothing stays in a cache between its sweeps over the mesh.
 
-use super::Problem;
+use super::Subject;
 use crate::operators::Operators;
 use crate::step::Method;
 
 /// Bytes of a cell in one step: each sweep (`begin` and `finish` of a stage) reads and writes its arrays once. Traces are
 /// written once and read once: those of neighbours are near.
-pub fn traffic(problem: &Problem) -> f64 {
+pub fn traffic(subject: &Subject) -> f64 {
+    let problem = &subject.problem;
     let operators = &problem.scheme.operators;
-    let unknowns = size_of_val(&problem.start.u[..]) as f64;
+    let unknowns = size_of_val(&problem.state.u[..]) as f64;
     let traces = problem.scheme.trace_bytes() as f64;
     let geometry = operators.geometry.bytes() as f64;
     let Operators { points, curl_free, .. } = operators;
@@ -26,5 +27,5 @@ pub fn traffic(problem: &Problem) -> f64 {
     };
     // The update: U in, its new values out; the projection; matrices to the points for the survey.
     let step = stages + 2.0 * unknowns + curl_free + points;
-    step / problem.mesh.cells.len() as f64
+    step / problem.body.mesh.cells.len() as f64
 }

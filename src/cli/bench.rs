@@ -1,6 +1,7 @@
 //! `dgmpm bench`: the speed of the step, against the peaks of this machine.
 
 use super::print::say;
+use super::threads;
 use crate::bench::{self, Campaign, Domain, Figures, Length, Setup};
 use crate::error::{Error, Result};
 use crate::scene::Method;
@@ -52,11 +53,11 @@ pub struct Args {
 
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
-    let kernel = super::kernel(args.kernel.as_deref())?;
+    let kernel = threads::kernel(args.kernel.as_deref())?;
     if let Some(out) = &args.all {
         return Campaign { kernel, out: out.clone(), mesh: args.mesh.clone(), say: &|text| say(text) }.run();
     }
-    super::check_threads(args.threads)?;
+    threads::check_threads(args.threads)?;
     let (setup, length) = (args.setup(kernel)?, args.length()?);
     let problem = setup.build()?;
     let measured = bench::measure(&problem, args.threads, length)?;

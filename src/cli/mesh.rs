@@ -1,12 +1,12 @@
 //! `dgmpm mesh`: import, make, inspect.
 
+use super::args::keep;
 use super::print::{note, row, say, table};
-use super::{keep, notices};
 use crate::error::{Error, Result};
-use crate::io::{gmsh, mesh_file};
+use crate::io::{gmsh, mesh_file, read_mesh};
 use crate::mesh::parts::EdgeCount;
 use crate::mesh::{Link, Mesh, links, quality::Quality, rectangle};
-use crate::scene::build::read_mesh;
+use crate::problem::notices;
 use std::path::{Path, PathBuf};
 
 /// Arguments.

@@ -1,28 +1,25 @@
 //! The program: one file a subcommand, arguments and `run`.
 
+mod args;
 mod bench;
-mod certificates;
 mod export;
-mod lost;
+mod interrupt;
 mod mesh;
-mod notices;
-mod pipeline;
 mod preprocess;
 mod print;
 mod progress;
-mod rebuild;
 mod regrid;
+mod report;
 mod run;
 mod seed;
 mod solve;
 mod stability;
 mod study;
 mod summary;
+mod threads;
 
-use crate::error::{Error, Result};
-use crate::lane::Kernel;
+use crate::error::Result;
 use clap::{Parser, Subcommand};
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const AFTER_HELP: &str = "\
@@ -118,90 +115,4 @@ fn command(cli: Cli) -> Result<()> {
         Command::Regrid(args) => regrid::run(&args),
         Command::Export(args) => export::run(&args),
     }
-}
-
-/// The scene of a command, with its overrides.
-#[derive(Debug, clap::Args)]
-struct SceneArgs {
-    /// Scene file (TOML)
-    scene: PathBuf,
-    /// Override a key, as often as needed: scheme.degree=3, boundary.0.kind=free, time.end=1e-4
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    sets: Vec<String>,
-}
-
-/// Where a run's results go, and on how many threads it runs.
-#[derive(Debug, clap::Args)]
-struct RunArgs {
-    /// Folder for the results [default: runs/<scene name>]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Replace results of an earlier run
-    #[arg(long)]
-    force: bool,
-    /// Threads [default: all processors]; the results do not depend on it
-    #[arg(long, value_name = "N")]
-    threads: Option<usize>,
-    /// Instruction set: avx512, avx2 or portable [default: the widest of this processor]; results differ in the last digits
-    #[arg(long, value_name = "NAME")]
-    kernel: Option<String>,
-}
-
-impl RunArgs {
-    /// The folder, `runs/<scene name>` by default.
-    fn folder(&self, scene: &crate::scene::Scene) -> crate::run::Folder {
-        let default = || Path::new("runs").join(scene.name());
-        crate::run::Folder::new(&self.out.clone().unwrap_or_else(default))
-    }
-
-    /// Starts the threads.
-    fn start_threads(&self) -> Result<()> {
-        self.threads.map_or(Ok(()), start_threads)
-    }
-}
-
-/// Threads a core that are still taken for a wish: more are a slip of the pen, and steps wait for the last of them.
-const THREADS_PER_CORE: usize = 4;
-
-/// Refuses a number of threads that this machine has no use for.
-fn check_threads(threads: usize) -> Result<()> {
-    // A system that does not tell refuses none.
-    let cores = std::thread::available_parallelism().map_or(usize::MAX / THREADS_PER_CORE, usize::from);
-    let most = THREADS_PER_CORE * cores;
-    if (1..=most).contains(&threads) {
-        return Ok(());
-    }
-    let what = match threads {
-        0 => "--threads is 0".to_owned(),
-        _ => format!("--threads is {threads}, and this machine has {cores} core(s)"),
-    };
-    Err(Error::input(what, format!("give a number of threads from 1 to {most}; {cores} use all cores")))
-}
-
-/// Starts so many threads for all that follows.
-fn start_threads(threads: usize) -> Result<()> {
-    check_threads(threads)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    pool.map_err(|why| Error::input(format!("cannot start {threads} threads: {why}"), "give a smaller --threads"))
-}
-
-/// The instruction set of `--kernel`; the widest of this processor where none is named.
-fn kernel(name: Option<&str>) -> Result<Kernel> {
-    let Some(name) = name else { return Ok(Kernel::widest()) };
-    let names: Vec<&str> = Kernel::NAMES.iter().map(|(name, _)| *name).collect();
-    let remedy = format!("give one of {}, or none for the widest that this processor has", names.join(", "));
-    let known = Kernel::NAMES.iter().find(|(known, _)| *known == name).map(|(_, kernel)| *kernel);
-    match known {
-        Some(kernel) if kernel.is_available() => Ok(kernel),
-        Some(_) => Err(Error::input(format!("this processor has no {name}"), remedy)),
-        None => Err(Error::input(format!("there is no kernel `{name}`"), remedy)),
-    }
-}
-
-/// Refuses to write over a file unless `force`.
-fn keep(path: &Path, force: bool) -> Result<()> {
-    if path.exists() && !force {
-        return Err(Error::input(format!("{} exists", path.display()), "give --force to replace it, or another --out"));
-    }
-    Ok(())
 }

@@ -1,5 +1,6 @@
 //! Progress: a bar with ETA on a terminal, a line a second elsewhere.
 
+use super::print::say;
 use crate::error::Result;
 use crate::observe::{Observer, Schedule, View, When};
 use crate::step::EnergyMade;
@@ -32,23 +33,18 @@ impl Progress {
     }
 }
 
-/// The warning over energy that was made, as a clause.
-pub fn energy_made(made: &EnergyMade) -> String {
-    let EnergyMade { joule, share, time, step } = made;
-    format!(
-        "{joule:.3e} J/m made out of nothing ({:.2} % of the energy at the start or the work done), step {step}, t = {time:.6e} s",
-        100.0 * share
-    )
-}
-
 impl Observer for Progress {
     fn energy_made(&mut self, made: &EnergyMade) {
-        let text = format!("warning: {}; the run goes on", energy_made(made));
+        let text = format!("warning: {made}; the run goes on");
         match &self.bar {
             // Above the bar, which stays.
             Some(bar) => bar.println(text),
             None => drop(writeln!(std::io::stderr(), "{text}")),
         }
+    }
+
+    fn notice(&mut self, text: &str) {
+        say(text);
     }
 
     fn schedule(&mut self) -> &mut Schedule {

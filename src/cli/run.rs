@@ -1,8 +1,9 @@
 //! `dgmpm run`: all stages in one go.
 
-use super::pipeline::Files;
-use super::{RunArgs, SceneArgs, solve};
+use super::args::{RunArgs, SceneArgs};
+use super::solve;
 use crate::error::Result;
+use crate::problem::Files;
 
 /// Arguments.
 #[derive(Debug, clap::Args)]

@@ -1,12 +1,11 @@
 //! `dgmpm seed`: material points into the cells of a mesh.
 
-use super::pipeline::Files;
+use super::args::{SceneArgs, keep};
 use super::print::say;
-use super::{SceneArgs, keep};
 use crate::cloud::Cloud;
 use crate::error::Result;
 use crate::io::cloud_file;
-use crate::scene::Scene;
+use crate::problem::Files;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -28,7 +27,7 @@ pub struct Args {
 
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
-    let scene = Scene::load(&args.scene.scene, &args.scene.sets)?;
+    let scene = args.scene.load()?;
     let mesh = Files { mesh: args.mesh.clone(), cloud: None }.mesh(&scene)?;
     let cloud = scene.build_cloud(&mesh)?;
     keep(&args.out, args.force)?;

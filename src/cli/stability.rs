@@ -95,7 +95,7 @@ pub struct Args {
 
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
-    args.threads.map_or(Ok(()), super::start_threads)?;
+    args.threads.map_or(Ok(()), super::threads::start_threads)?;
     let questions = Questions { angles: args.angles.max(2), limit: args.limit, norms: args.norms };
     for path in [&args.csv, &args.plot].into_iter().flatten() {
         if path.exists() && !args.force {

@@ -1,11 +1,12 @@
 //! `dgmpm study`: what accuracy costs in time.
 
+use super::args::{SceneArgs, keep};
 use super::print::say;
-use super::{SceneArgs, start_threads};
+use super::threads::start_threads;
 use crate::error::{Error, Result};
 use crate::lane::Kernel;
 use crate::scene::{Method, Scene};
-use crate::study::{Aim, Case, Plan, Reference, Series, Session, Study, machine, smallest_h};
+use crate::study::{Aim, Case, Plan, Reference, Series, Session, Study, machine};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
@@ -60,7 +61,7 @@ pub struct Args {
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     start_threads(args.threads)?;
-    let scene = Scene::load(&args.scene.scene, &args.scene.sets)?;
+    let scene = args.scene.load()?;
     if !scene.regrids.is_empty() {
         let remedy = "leave them out by --set regrid=[]";
         return Err(scene.error(
@@ -71,7 +72,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let (plan, [degree, refinement]) = (args.plan(&scene)?, args.reference(&scene)?);
     let out = args.out.clone().unwrap_or_else(|| Path::new("runs").join(format!("{}-study", scene.name())));
-    super::keep(&out.join("study.csv"), args.force)?;
+    keep(&out.join("study.csv"), args.force)?;
     let mesh = scene.build_mesh()?;
     // Never set: the table is kept after each run, and an interrupt may simply end the program.
     let interrupt = AtomicBool::new(false);
@@ -83,7 +84,7 @@ pub fn run(args: &Args) -> Result<()> {
         format!("machine: {}", machine(Kernel::widest())),
     ];
     head.iter().for_each(say);
-    let (cells, h) = (mesh.cells.len(), smallest_h(&mesh));
+    let (cells, h) = (mesh.cells.len(), mesh.smallest_h());
     let study =
         Study { scene: &scene, cells, h, reference, records: vec![], repeat: args.repeat, interrupt: &interrupt };
     Session { study, plan, out, head, say: &|text| say(text) }.run()

@@ -1,81 +1,22 @@
-//! `summary.json` and the table at the end of a run.
+//! The table at the end of a run.
 
-use super::pipeline::Body;
 use super::print::{mebibytes, row, seconds, table};
-use crate::error::Result;
-use crate::exact::{Errors, Exact, errors};
-use crate::run::{Folder, Report, norms};
-use crate::scene::Scene;
-use crate::state::State;
-use crate::step::{Balance, Scheme, phase::NAMES};
-use serde_json::{Value, json};
-use std::sync::Arc;
+use crate::problem::Outcome;
+use crate::run::Report;
+use crate::step::{Balance, phase::NAMES};
 
-/// A run at its end.
-pub struct Outcome<'a> {
-    /// The scene.
-    pub scene: &'a Scene,
-    /// Mesh and cloud.
-    pub body: &'a Body,
-    /// The scheme.
-    pub scheme: &'a Scheme,
-    /// The last good state.
-    pub state: &'a State,
-    /// Figures of the run.
-    pub report: &'a Report,
-    /// Errors, where the scene names an exact solution.
-    pub errors: Option<Errors>,
-}
-
-impl<'a> Outcome<'a> {
-    /// With the errors against the exact solution of the scene.
-    pub fn new(scene: &'a Scene, body: &'a Body, scheme: &'a Scheme, state: &'a State, report: &'a Report) -> Self {
-        let of = |exact: Arc<dyn Exact>| errors(exact.as_ref(), &body.mesh, scheme, state, &body.material);
-        Self { scene, body, scheme, state, report, errors: scene.build_exact().map(of) }
-    }
-
-    /// Writes `summary.json`. `status`: done, unstable, interrupted or failed; `loss`: what is known of a loss of stability.
-    pub fn write(&self, folder: &Folder, status: &str, loss: Option<Value>) -> Result<()> {
-        let Self { scene, body, scheme, state, .. } = self;
-        let mut all = self.report.json(scheme, state);
-        if let Some(errors) = &self.errors {
-            all.insert("errors".to_owned(), error_json(errors));
+/// Prints steps, dt, seconds per phase, DoF-updates per second, memory, energy, momentum and errors.
+pub fn print(outcome: &Outcome) {
+    let mut rows = rows(outcome.report);
+    if let Some(errors) = &outcome.errors {
+        for (name, norms) in errors.fields() {
+            let text = format!("L1 {:.4e}, L2 {:.4e}, Linf {:.4e}", norms.l1, norms.l2, norms.linf);
+            rows.push(row(format!("error of {name}"), text));
         }
-        all.insert("title".to_owned(), json!(scene.title));
-        all.insert("method".to_owned(), json!(scene.scheme.method.name()));
-        all.insert("degree".to_owned(), json!(scene.scheme.degree));
-        all.insert("time_degree".to_owned(), json!(scene.scheme.time_degree));
-        all.insert("points".to_owned(), json!(body.cloud.len()));
-        all.insert("norms".to_owned(), json!(norms(scheme, state, &body.material)));
-        all.insert("kernel".to_owned(), json!(format!("{:?}", scheme.kernel).to_lowercase()));
-        all.insert("status".to_owned(), json!(status));
-        if let Some(loss) = loss {
-            all.insert("loss".to_owned(), loss);
-        }
-        let text = format!("{:#}\n", Value::Object(all));
-        crate::io::pending::write_text(&folder.summary(), &text)
+        rows.push(row("standard error", format!("{:.4e}", errors.standard)));
     }
-
-    /// Prints steps, dt, seconds per phase, DoF-updates per second, memory, energy, momentum and errors.
-    pub fn print(&self) {
-        let mut rows = rows(self.report);
-        if let Some(errors) = &self.errors {
-            for (name, norms) in errors.fields() {
-                let text = format!("L1 {:.4e}, L2 {:.4e}, Linf {:.4e}", norms.l1, norms.l2, norms.linf);
-                rows.push(row(format!("error of {name}"), text));
-            }
-            rows.push(row("standard error", format!("{:.4e}", errors.standard)));
-        }
-        rows.push(row("instruction set", format!("{:?}", self.scheme.kernel)));
-        table(&rows);
-    }
-}
-
-fn error_json(errors: &Errors) -> Value {
-    let mut all: serde_json::Map<String, Value> =
-        errors.fields().iter().map(|(name, norms)| ((*name).to_owned(), json!(norms))).collect();
-    all.insert("standard".to_owned(), json!(errors.standard));
-    Value::Object(all)
+    rows.push(row("instruction set", format!("{:?}", outcome.problem.scheme.kernel)));
+    table(&rows);
 }
 
 /// What a run cost, and what became of energy and momentum.

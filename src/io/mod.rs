@@ -24,3 +24,15 @@ pub mod snapshot;
 pub mod store;
 pub mod vtu;
 pub mod xdmf;
+
+use crate::error::Result;
+use crate::mesh::Mesh;
+use std::path::Path;
+
+/// Reads a mesh: `.h5` as written by `dgmpm mesh`, else Gmsh.
+///
+/// # Errors
+/// Bad input, with its place.
+pub fn read_mesh(path: &Path) -> Result<Mesh> {
+    if store::is_meant_as_store(path) { mesh_file::read_mesh(path) } else { Ok(gmsh::read(path)?.with_common_axes()) }
+}

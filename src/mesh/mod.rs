@@ -51,6 +51,11 @@ impl Mesh {
         self.original.get(cell).copied().unwrap_or(cell as u64 + 1)
     }
 
+    /// min_e h_e, m: the time step is proportional to it.
+    pub fn smallest_h(&self) -> f64 {
+        (0..self.cells.len()).map(|cell| map::h_e(&self.corners(cell))).fold(f64::INFINITY, f64::min)
+    }
+
     /// The lower left and the upper right corner of the box around its nodes, m.
     pub fn extent(&self) -> [[f64; 2]; 2] {
         let start = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];

@@ -69,6 +69,9 @@ pub trait Observer {
     /// The body has made energy out of nothing: said once, while the run goes on. Nothing to do for those that say nothing.
     fn energy_made(&mut self, _: &EnergyMade) {}
 
+    /// Something worth a line, such as what a regrid did. Nothing to do for those that say nothing.
+    fn notice(&mut self, _: &str) {}
+
     /// The run goes on with another grid. Nothing to do for those that keep nothing of the old one.
     ///
     /// # Errors

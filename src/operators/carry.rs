@@ -96,6 +96,8 @@ pub struct Carried {
     pub kept: Vec<bool>,
     /// The cells with virtual points, rising, and why.
     pub deficient: Vec<Deficient>,
+    /// The certificate of each cell on what the scheme samples there, without dt.
+    pub certificates: Vec<Certificate>,
 }
 
 /// Whether points are the Gauss nodes, in their order: to 1e-9 of the cell, which is what text files keep.
@@ -120,17 +122,26 @@ pub fn carry(mesh: &Mesh, line: &Line, cloud: &Cloud, limits: &Limits, memory: &
         true => (!on_nodes[class[cell]]).then_some(Cause::Memory),
         false => causes[class[cell]],
     };
+    let h = |cell: usize| map::h_e(&mesh.corners(cell));
     let found = |cell: usize| {
-        let given = Certificate { h: map::h_e(&mesh.corners(cell)), ..fits[class[cell]] };
+        let given = Certificate { h: h(cell), ..fits[class[cell]] };
         cause(cell).map(|cause| Deficient { cell, cause, given })
     };
     let deficient: Vec<Deficient> = (0..mesh.cells.len()).filter_map(found).collect();
     if deficient.is_empty() && !memory.contains(&true) {
         let (source, kept) = ((0..cloud.len()).collect(), vec![true; cloud.len()]);
-        return Ok(Carried { cloud: cloud.clone(), source, kept, deficient });
+        let certificates = (0..mesh.cells.len()).map(|cell| Certificate { h: h(cell), ..fits[class[cell]] }).collect();
+        return Ok(Carried { cloud: cloud.clone(), source, kept, deficient, certificates });
     }
+    let of_nodes = of_points(line, &nodes)?;
+    let certificate = |cell: usize| {
+        let on_nodes = cause(cell).is_some() || has_memory(cell);
+        Certificate { h: h(cell), ..if on_nodes { of_nodes } else { fits[class[cell]] } }
+    };
+    let certificates = (0..mesh.cells.len()).map(certificate).collect();
     let trees = trees(mesh, cloud, &deficient.iter().map(|d| d.cell).collect::<Vec<_>>())?;
-    let mut out = Carried { cloud: Cloud { first: vec![0], xi: vec![] }, source: vec![], kept: vec![], deficient };
+    let cloud_of_none = Cloud { first: vec![0], xi: vec![] };
+    let mut out = Carried { cloud: cloud_of_none, source: vec![], kept: vec![], deficient, certificates };
     for cell in 0..mesh.cells.len() {
         let given = cloud.first[cell]..cloud.first[cell + 1];
         let count = match (cause(cell), &trees[mesh.cell_group[cell]]) {

@@ -7,7 +7,6 @@ use crate::exact::{
     Exact as Solution, LinearBar, Manufactured, PlasticImpact, Riemann, SimpleWave, Vortex, WallImpact,
 };
 use crate::material::Law;
-use crate::mesh::{Mesh, map};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -155,7 +154,7 @@ impl Scene {
             let what = format!("\"{name}\" holds for a linear law only");
             return Err(self.error("exact.kind", what, "give the material law = \"linear-elastic\""));
         }
-        if let Some(law) = self.build_laws().iter().position(|law| law.internal().is_empty() == entry.plastic) {
+        if let Some(law) = self.laws().iter().position(|law| law.internal().is_empty() == entry.plastic) {
             let law = &self.materials[law].law;
             let what = format!("\"{name}\" is no solution for the law \"{law}\"");
             let remedy = if entry.plastic {
@@ -176,29 +175,6 @@ impl Scene {
         Ok(())
     }
 
-    /// Whether the materials stand in the mesh where the exact solution has them: the first `[[material]]` is its first.
-    ///
-    /// # Errors
-    /// The first cell that is of another material.
-    pub fn check_exact_materials(&self, mesh: &Mesh) -> Result<()> {
-        let solution = if self.materials.len() > 1 { self.build_exact() } else { None };
-        let Some(solution) = solution else { return Ok(()) };
-        for (cell, material) in self.material_of_cells(mesh).into_iter().enumerate() {
-            let corners = mesh.corners(cell);
-            // Just inside of the corners: on an edge both materials are right.
-            let inside = [[0.01, 0.01], [0.99, 0.01], [0.99, 0.99], [0.01, 0.99]].map(|xi| map::position(&corners, xi));
-            if let Some([x, y]) = inside.into_iter().find(|x| solution.material(*x) != material) {
-                let number = mesh.number(cell);
-                let what =
-                    format!("cell {number} at ({x:.6}, {y:.6}) is not of the material that the solution has there");
-                let remedy =
-                    "let the cells of the first [[material]] end at the interface, where those of the second begin";
-                return Err(self.error("exact.kind", what, remedy));
-            }
-        }
-        Ok(())
-    }
-
     fn entry(&self) -> Option<&'static Entry> {
         let exact = self.exact.as_ref()?;
         SOLUTIONS.iter().find(|entry| entry.name == exact.kind)
@@ -206,7 +182,7 @@ impl Scene {
 
     /// The exact solution that the scene names.
     pub fn build_exact(&self) -> Option<Arc<dyn Solution>> {
-        let (exact, laws) = (self.exact.as_ref()?, self.build_laws());
+        let (exact, laws) = (self.exact.as_ref()?, self.laws());
         let parameter = |name: &str| exact.parameters.get(name).copied().unwrap_or(f64::NAN);
         // A scene has at least one material, and every law of the list is built.
         if laws.is_empty() { None } else { (self.entry()?.build)(&parameter, &laws) }

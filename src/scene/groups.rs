@@ -1,28 +1,10 @@
-//! The groups that a scene names against those of the mesh.
+//! The groups that a scene names against those that exist.
 
 use super::{Condition, Scene};
 use crate::error::Result;
-use crate::mesh::Mesh;
-use crate::mesh::parts::EdgeCount;
 use crate::scene::suggest;
 
 impl Scene {
-    /// Checks the groups of a mesh: as [`Scene::check_groups`], where groups with edges inside of the body, or with none at
-    /// all, need no condition and can have none.
-    ///
-    /// # Errors
-    /// A group of the scene or of the mesh that has no match; a condition on a group with inner edges, with counts.
-    pub fn check_mesh(&self, mesh: &Mesh) -> Result<()> {
-        let counts = mesh.edge_counts();
-        let is_inside = |name: &&String| {
-            let group = mesh.edge_groups.iter().position(|group| group == *name);
-            group.is_some_and(|group| counts[group].inner > 0 || counts[group].boundary == 0)
-        };
-        let inside: Vec<&str> = mesh.edge_groups.iter().filter(is_inside).map(String::as_str).collect();
-        self.check_all(&mesh.groups, &mesh.edge_groups, &inside)?;
-        self.check_conditions(mesh, &counts)
-    }
-
     /// Checks that every group of the scene exists in the mesh, and that the mesh has no group of cells without
     /// a material and no group of boundary edges without a condition.
     ///
@@ -32,39 +14,8 @@ impl Scene {
         self.check_all(cell_groups, edge_groups, &[])
     }
 
-    /// A condition acts on boundary edges. On a group of others it would do nothing, and nobody would be told.
-    fn check_conditions(&self, mesh: &Mesh, counts: &[EdgeCount]) -> Result<()> {
-        let named = |(i, boundary): (usize, &super::Boundary)| {
-            let own = (format!("boundary.{i}.group"), boundary.group.clone());
-            let partner = match &boundary.condition {
-                Condition::Periodic { partner } => Some((format!("boundary.{i}.partner"), partner.clone())),
-                _ => None,
-            };
-            [Some(own), partner]
-        };
-        for (key, name) in self.boundaries.iter().enumerate().flat_map(named).flatten() {
-            // `check_all` has refused groups that the mesh lacks.
-            let Some(group) = mesh.edge_groups.iter().position(|group| *group == name) else { continue };
-            let EdgeCount { inner, boundary } = counts[group];
-            if inner > 0 {
-                let what = format!(
-                    "the group \"{name}\" has {inner} edge(s) inside of the body and {boundary} boundary edge(s): \
-                     conditions do not act on edges inside"
-                );
-                let remedy = "put the boundary edges alone into a group; a group of edges inside needs no [[boundary]], and \
-                              where a gap is meant the two sides need nodes of their own (in Gmsh `Plugin(Crack)`)";
-                return Err(self.error(&key, what, remedy));
-            }
-            if boundary == 0 {
-                let what = format!("the group \"{name}\" of the mesh has no edge");
-                return Err(self.error(&key, what, "remove the condition, or give a mesh whose group has edges"));
-            }
-        }
-        Ok(())
-    }
-
     /// As [`Scene::check_groups`]; the groups `inside` need no condition.
-    fn check_all(&self, cell_groups: &[String], edge_groups: &[String], inside: &[&str]) -> Result<()> {
+    pub(crate) fn check_all(&self, cell_groups: &[String], edge_groups: &[String], inside: &[&str]) -> Result<()> {
         let materials: Vec<Option<&str>> = self.materials.iter().map(|material| material.group.as_deref()).collect();
         let sources = self.sources.iter().map(|source| source.group.as_deref());
         let mut boundaries: Vec<Option<&str>> =

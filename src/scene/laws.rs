@@ -1,6 +1,7 @@
 //! The laws that scenes can name, with their parameters: what a `[[material]]` is checked against.
 
 use super::reader::{Check, NOT_NEGATIVE, POSITIVE};
+use super::{Material, Scene};
 use crate::material::{self, J2, LinearElastic, NeoHookean};
 
 /// A law and its parameters, all required.
@@ -72,3 +73,21 @@ pub const LAWS: &[Law] = &[
         },
     },
 ];
+
+impl Scene {
+    /// The laws, in the order of the `[[material]]` tables.
+    pub fn laws(&self) -> Vec<material::Law> {
+        laws(&self.materials)
+    }
+}
+
+/// The laws of some materials.
+pub(super) fn laws(materials: &[Material]) -> Vec<material::Law> {
+    let build = |m: &Material| {
+        let parameter = |name: &str| m.parameters.get(name).copied().unwrap_or(f64::NAN);
+        let law = LAWS.iter().find(|law| law.name == m.law)?;
+        Some((law.build)(&parameter, m.density))
+    };
+    // Parsing has refused names that the list lacks.
+    materials.iter().filter_map(build).collect()
+}

@@ -4,12 +4,8 @@
 //! mesh is checked by [`Scene::check_mesh`]. Every message has file, line and column (or the `--set` at fault)
 //! and lists what exists. A scene knows neither mesh nor solver: names become types elsewhere. Units are SI.
 
-pub mod build;
-mod cloud;
-mod culprit;
 mod exact;
 mod expression;
-pub mod grids;
 mod groups;
 mod laws;
 mod names;
@@ -20,9 +16,7 @@ pub mod portable;
 mod read;
 mod reader;
 pub mod regrid;
-mod restart;
 mod sets;
-mod snapshot;
 mod suggest;
 
 use std::collections::BTreeMap;
@@ -37,8 +31,6 @@ pub use crate::observe::Field;
 use crate::operators::Limits;
 pub use crate::riemann::Flux;
 use crate::run::Limits as WatchLimits;
-pub use cloud::{Given, Sampled, read_points};
-pub use culprit::Culprit;
 pub use exact::{Exact, SOLUTIONS};
 pub use expression::{Expression, FUNCTIONS, Fault};
 pub use laws::{LAWS, Law, Parameter};

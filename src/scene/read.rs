@@ -56,7 +56,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         scheme,
         start,
         end,
-        outputs: super::outputs::outputs(output_tables, &super::build::laws(&materials), start)?,
+        outputs: super::outputs::outputs(output_tables, &super::laws::laws(&materials), start)?,
         materials,
         watch: watch(watch_table.as_mut())?,
         regrids: super::regrid::regrids(regrid_tables)?,

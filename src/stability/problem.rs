@@ -1,9 +1,8 @@
 //! What is looked at: a scene, a free strip or a periodic patch, built as a run of a scene is.
 
 use crate::error::{Error, Result};
-use crate::lane::Kernel;
 use crate::mesh::{self, Mesh};
-use crate::operators::Operators;
+use crate::problem;
 use crate::scene::{Scene, Step};
 use crate::state::{State, UNKNOWNS};
 use crate::step::{Method, Scheme, Survey, Work, cfl};
@@ -107,15 +106,15 @@ impl Setup {
         // Outputs would ask for the displacement.
         scene.outputs.clear();
         let (mesh, unit, units) = self.mesh(&mut scene)?;
-        let cloud = scene.sample(&mesh, scene.build_cloud(&mesh)?)?.cloud;
-        let cloud = match unit {
-            Some(unit) => repeated(&cloud, unit, unit.map(|n| n * units)),
-            None => cloud,
-        };
-        let needs = scene.needs(&cloud);
-        let operators = Operators::build(&mesh, &scene.links(&mesh)?, &scene.material_of_cells(&mesh), &needs)?;
-        let scheme = scene.build_scheme(&mesh, operators, Kernel::widest());
-        let state = without_displacement(&scheme, scene.initial_state(&mesh, &scheme)?);
+        let mut setup = problem::Setup::of(&scene).mesh(mesh);
+        let mut body = setup.body()?;
+        if let Some(unit) = unit {
+            body.cloud = repeated(&body.cloud, unit, unit.map(|n| n * units));
+        }
+        let problem = setup
+            .build_from(body, |mesh, scheme| Ok(without_displacement(scheme, scene.initial_state(mesh, scheme)?)))?;
+        let problem::Problem { body, scheme, state, .. } = problem;
+        let mesh = body.mesh;
         Problem::new(mesh, scheme, state, scene, (unit, units), (courant, known_limit))
     }
 

@@ -48,6 +48,19 @@ pub struct EnergyMade {
     pub step: usize,
 }
 
+/// As a clause, for messages.
+impl std::fmt::Display for EnergyMade {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let EnergyMade { joule, share, time, step } = self;
+        let percent = 100.0 * share;
+        write!(
+            f,
+            "{joule:.3e} J/m made out of nothing ({percent:.2} % of the energy at the start or the work done), step {step}, \
+             t = {time:.6e} s"
+        )
+    }
+}
+
 impl Totals {
     /// No cell yet.
     const EMPTY: Totals = Totals {

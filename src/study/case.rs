@@ -5,13 +5,10 @@ use super::predict::Prediction;
 use super::reference::Reference;
 use crate::error::{Error, Result};
 use crate::exact::Errors;
-use crate::lane::Kernel;
-use crate::mesh::{Mesh, map};
-use crate::operators::Operators;
-use crate::run::{Report, Run, Settings, Stop, dofs};
+use crate::problem::{Problem, Setup};
+use crate::run::{Report, Run, Stop, dofs};
 use crate::scene::{self, Method, Scene, Step};
 use crate::state::State;
-use crate::step::Scheme;
 use std::sync::atomic::AtomicBool;
 
 /// Share of the stability limit in place of a scene's `cfl`: that number means another share for every degree.
@@ -99,59 +96,32 @@ impl Case {
         }
     }
 
-    /// Mesh, operators, scheme and initial state.
+    /// The problem of this case.
     ///
     /// # Errors
     /// Bad input, as for a run of the scene.
-    pub fn build(&self, scene: &Scene) -> Result<Built> {
+    pub fn build(&self, scene: &Scene) -> Result<Problem> {
         let mut scene = scene.with(&self.sets(scene))?;
         // A study looks at the end only: outputs would ask for time, files and the displacement.
         scene.outputs.clear();
-        let settings = scene.settings()?;
         let mut mesh = scene.build_mesh()?;
         if let scene::Mesh::File(_) = scene.mesh {
             mesh = mesh.refined(self.parts());
         }
-        let cloud = scene.sample(&mesh, scene.build_cloud(&mesh)?)?.cloud;
-        let material = scene.material_of_cells(&mesh);
-        let places = scene.places(&cloud, &material);
-        let needs = scene.needs(&places);
-        let operators = Operators::build(&mesh, &scene.links(&mesh)?, &material, &needs)?;
-        let scheme = scene.build_scheme(&mesh, operators, Kernel::widest());
-        let start = scene.initial_state(&mesh, &scheme)?;
-        Ok(Built { mesh, material, points: cloud.len(), scheme, start, settings })
+        Setup::of(&scene).mesh(mesh).build()
     }
 }
 
-/// A case that is ready to run.
-pub struct Built {
-    /// The mesh.
-    pub mesh: Mesh,
-    /// The law of each cell.
-    pub material: Vec<usize>,
-    /// Number of material points.
-    pub points: usize,
-    /// The scheme.
-    pub scheme: Scheme,
-    /// The initial state.
-    pub start: State,
-    /// End and step.
-    pub settings: Settings,
-}
-
-impl Built {
-    /// Runs to the end without outputs.
-    ///
-    /// # Errors
-    /// See [`Stop`].
-    pub fn run(&self, interrupt: &AtomicBool) -> std::result::Result<(State, Report), Stop> {
-        let (mut state, mut report) = (self.start.clone(), Report::default());
-        let mut run =
-            Run { mesh: &self.mesh, scheme: &self.scheme, settings: self.settings, observers: vec![], interrupt };
-        run.advance(&mut state, &mut report)?;
-        report.finish(&self.scheme, &state);
-        Ok((state, report))
-    }
+/// Runs a problem to the end without outputs, from a copy of its state.
+///
+/// # Errors
+/// See [`Stop`].
+pub fn run(problem: &Problem, interrupt: &AtomicBool) -> std::result::Result<(State, Report), Stop> {
+    let (mut state, mut report) = (problem.state.clone(), Report::default());
+    let (mesh, scheme, settings) = (&problem.body.mesh, &problem.scheme, problem.settings);
+    Run { mesh, scheme, settings, observers: vec![], interrupt }.advance(&mut state, &mut report)?;
+    report.finish(scheme, &state);
+    Ok((state, report))
 }
 
 /// What was measured of a case.
@@ -231,10 +201,10 @@ pub(super) fn measure(
         Ok(built) => built,
         Err(why) => return Ok(Record { predicted, ..Record::failed(case, why.to_string()) }),
     };
-    let sizes = [built.mesh.cells.len(), dofs(&built.scheme)];
+    let sizes = [built.body.mesh.cells.len(), dofs(&built.scheme)];
     let mut best: Option<(State, Report)> = None;
     for _ in 0..repeat.max(1) {
-        match built.run(interrupt) {
+        match run(&built, interrupt) {
             Ok((state, report)) if best.as_ref().is_none_or(|(_, old)| report.cpu < old.cpu) => {
                 best = Some((state, report));
             }
@@ -253,7 +223,7 @@ pub(super) fn measure(
     let Some((state, report)) = best else { return Ok(Record::failed(case, "no run".into())) };
     let errors = reference.errors(&built, &state);
     let record = Record::new(case, sizes, &report, Some(errors), "done".into());
-    Ok(Record { predicted, h: smallest_h(&built.mesh), ..record })
+    Ok(Record { predicted, h: built.body.smallest_h(), ..record })
 }
 
 /// Why a run lost stability, in a few words.
@@ -263,11 +233,6 @@ pub fn why(stop: &Stop) -> String {
         Stop::EnergyMade(made) => format!("it made {:.0} % of its energy out of nothing", 100.0 * made.0.share),
         Stop::Interrupted | Stop::Output(_) => "it was stopped".to_owned(),
     }
-}
-
-/// min_e h_e, m.
-pub fn smallest_h(mesh: &Mesh) -> f64 {
-    (0..mesh.cells.len()).map(|cell| map::h_e(&mesh.corners(cell))).fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ mod session;
 mod table;
 mod words;
 
-pub use case::{Built, Case, Record, Series, smallest_h};
+pub use case::{Case, Record, Series};
 pub use choice::{Aim, Choice, ranked};
 pub use front::{Answer, answers, cost, front};
 pub use plot::{Axis, plot};

@@ -1,10 +1,11 @@
 //! What errors are taken against: the exact solution of the scene, or a finer run of a higher degree.
 
-use super::case::{Built, Case, Series, why};
+use super::case::{Case, Series, run, why};
 use crate::cloud::Locator;
 use crate::error::{Error, Result};
 use crate::exact::{Errors, Exact, compare, errors};
 use crate::observe::Solution;
+use crate::problem::Problem;
 use crate::run::Stop;
 use crate::scene::{Method, Scene};
 use crate::state::State;
@@ -21,7 +22,7 @@ pub enum Reference {
 
 /// A finer run, and what is known of its own error.
 pub struct Finer {
-    built: Built,
+    built: Problem,
     state: State,
     case: Case,
     /// Its estimated standard error; none where it has no two coarser meshes to compare with.
@@ -32,7 +33,7 @@ impl Finer {
     fn run(scene: &Scene, case: Case, interrupt: &AtomicBool) -> Result<Self> {
         let built = case.build(scene)?;
         let lost = |what: String| Error::input(what, "give another --reference DEGREE,REFINEMENT");
-        match built.run(interrupt) {
+        match run(&built, interrupt) {
             Ok((state, _)) => Ok(Self { built, state, case, error: None }),
             Err(stop @ (Stop::Unstable(_) | Stop::EnergyMade(_))) => {
                 Err(lost(format!("the reference run lost stability: {}", why(&stop))))
@@ -43,12 +44,12 @@ impl Finer {
     }
 
     /// The errors of another solution of the scene, by quadrature in the cells of this one, which are the smaller.
-    fn errors(&self, built: &Built, state: &State) -> Errors {
-        let own = Solution::of_state(&self.built.scheme, &self.state, &self.built.material);
-        let other = Solution::of_state(&built.scheme, state, &built.material);
-        let locator = Locator::new(&built.mesh);
+    fn errors(&self, built: &Problem, state: &State) -> Errors {
+        let own = Solution::of_state(&self.built.scheme, &self.state, &self.built.body.material);
+        let other = Solution::of_state(&built.scheme, state, &built.body.material);
+        let locator = Locator::new(&built.body.mesh);
         let order = own.basis.len() + 2;
-        compare(&self.built.mesh, order, &|cell| own.law(cell), &|cell, xi, x| {
+        compare(&self.built.body.mesh, order, &|cell| own.law(cell), &|cell, xi, x| {
             let expected = own.at(cell, xi);
             // A point of the body that another mesh of it lacks would show as an error that is not a number.
             let nothing = ([f64::NAN; 4], [f64::NAN; 2], expected.internal);
@@ -80,7 +81,7 @@ impl Reference {
         let mut finer = Finer::run(scene, case(degree, refinement), interrupt)?;
         let distance = |other: Case| -> Result<(f64, f64)> {
             let coarse = Finer::run(scene, other, interrupt)?;
-            let cells = |built: &Built| built.mesh.cells.len() as f64;
+            let cells = |built: &Problem| built.body.mesh.cells.len() as f64;
             let h = (cells(&finer.built) / cells(&coarse.built)).sqrt();
             Ok((h, finer.errors(&coarse.built, &coarse.state).standard))
         };
@@ -97,9 +98,9 @@ impl Reference {
     }
 
     /// The errors of a state.
-    pub fn errors(&self, built: &Built, state: &State) -> Errors {
+    pub fn errors(&self, built: &Problem, state: &State) -> Errors {
         match self {
-            Self::Exact(exact) => errors(exact.as_ref(), &built.mesh, &built.scheme, state, &built.material),
+            Self::Exact(exact) => errors(exact.as_ref(), &built.body.mesh, &built.scheme, state, &built.body.material),
             Self::Run(finer) => finer.errors(built, state),
         }
     }
@@ -121,7 +122,7 @@ impl Reference {
                     Some(error) => format!("its own error is about {error:.1e}"),
                     None => "its own error is not known: the mesh has no coarser ones to compare with".to_owned(),
                 };
-                format!("{} on {} cells; {own}", finer.case.series.name(), finer.built.mesh.cells.len())
+                format!("{} on {} cells; {own}", finer.case.series.name(), finer.built.body.mesh.cells.len())
             }
         }
     }

@@ -7,6 +7,7 @@
 mod assemble;
 mod error;
 mod kinds;
+pub mod program;
 mod sections;
 mod source;
 mod v22;

@@ -1,7 +1,6 @@
 //! Why a run lost stability, what is left of it, and what may help: that depends on what the scene has switched on.
 
-use super::pipeline::describe;
-use super::rebuild::Built;
+use super::Problem;
 use crate::cloud::seed;
 use crate::error::{Error, Result};
 use crate::operators::Sampling;
@@ -23,12 +22,8 @@ const LEBESGUE: f64 = 20.0;
 
 /// A run that lost stability, with everything that is known about it.
 pub struct Case<'a> {
-    /// The scene.
-    pub scene: &'a Scene,
-    /// Grid and scheme.
-    pub built: &'a Built,
-    /// The state before the step that failed.
-    pub state: &'a State,
+    /// The problem, with the state before the step that failed.
+    pub problem: &'a Problem,
     /// Figures of the run.
     pub report: &'a Report,
     /// The loss.
@@ -49,10 +44,11 @@ impl Case<'_> {
     /// The error: bad input where an expression of the scene is not finite, which no other step size can mend; else lost
     /// stability. `kept` says where a state is from which the run can go on.
     pub fn error(&self, kept: &str) -> Error {
-        let Self { scene, built, lost, .. } = self;
+        let Self { problem, lost, .. } = self;
+        let scene = &problem.scene;
         if lost.loss.kind == LossKind::NotFinite {
-            let times = built.scheme.data_times(lost.time, lost.dt);
-            if let Some(culprit) = scene.culprit(&built.body.mesh, &built.scheme, lost.loss.cell, &times) {
+            let times = problem.scheme.data_times(lost.time, lost.dt);
+            if let Some(culprit) = scene.culprit(&problem.body.mesh, &problem.scheme, lost.loss.cell, &times) {
                 let what = format!("step {}, t = {:.9e} s: {}", lost.step, lost.time, culprit.what);
                 let remedy = format!("give an expression that is finite at all places and times of the run\n  {kept}");
                 return scene.error(&culprit.key, what, remedy);
@@ -60,7 +56,7 @@ impl Case<'_> {
         }
         let hints = self.hints().join("\n  - ");
         Error::Unstable {
-            what: describe(&lost.loss, &built.scheme, &built.body.mesh),
+            what: problem.describe(&lost.loss),
             time: lost.time,
             step: lost.step,
             remedy: format!("{kept}\n  what may help:\n  - {hints}"),
@@ -70,12 +66,12 @@ impl Case<'_> {
     /// For `summary.json`.
     pub fn json(&self) -> Value {
         let Lost { loss, step, time, kept, .. } = self.lost;
-        let at = self.built.scheme.position_of(loss.cell, loss.site);
+        let at = self.problem.scheme.position_of(loss.cell, loss.site);
         json!({
             "step": step,
             "time": time,
             "what": loss.kind.to_string(),
-            "cell": self.built.body.mesh.number(loss.cell),
+            "cell": self.problem.body.mesh.number(loss.cell),
             "place": loss.site.to_string(),
             "at": at,
             "kept_step": kept.step,
@@ -92,8 +88,8 @@ impl Case<'_> {
     }
 
     fn step_size(&self) -> Option<String> {
-        let (scheme, degree) = (&self.built.scheme, self.scene.scheme.degree);
-        let courant = self.scene.settings().ok()?.courant;
+        let (scheme, degree) = (&self.problem.scheme, self.problem.scene.scheme.degree);
+        let courant = self.problem.scene.settings().ok()?.courant;
         let safety = courant / cfl::limit(&scheme.method, degree);
         // A share that is written as a cfl number is rounded.
         (safety > SAFETY + 1e-9).then(|| {
@@ -102,13 +98,13 @@ impl Case<'_> {
     }
 
     fn curl(&self) -> Option<String> {
-        let off = matches!(self.scene.curl, Curl::Off) && self.scene.scheme.degree > 0;
+        let off = matches!(self.problem.scene.curl, Curl::Off) && self.problem.scene.scheme.degree > 0;
         off.then(|| "[curl] control is \"off\", and a body in compression is then unstable: leave it out".to_owned())
     }
 
     fn regrid(&self) -> Option<String> {
         let Lost { step, since, .. } = self.lost;
-        let began = self.state.step.saturating_sub(self.report.steps);
+        let began = self.problem.state.step.saturating_sub(self.report.steps);
         (*since > began).then(|| {
             let before = step - since;
             format!("the grid was new at step {since}, {before} steps before: let the run begin with it, or regrid less often")
@@ -119,7 +115,7 @@ impl Case<'_> {
     /// work is not known.
     fn risen(&self) -> Option<f64> {
         let first = self.report.first?.accounted();
-        let now = self.built.scheme.totals(self.state).accounted();
+        let now = self.problem.scheme.totals(&self.problem.state).accounted();
         let work = match &self.report.balance {
             Some(balance) => balance.boundary_work + balance.source_work,
             None if self.is_driven() => return None,
@@ -140,12 +136,12 @@ impl Case<'_> {
             | Condition::Absorbing
             | Condition::Periodic { .. } => true,
         };
-        !self.built.scheme.sources.is_empty() || !self.scene.boundaries.iter().all(|b| still(&b.condition))
+        !self.problem.scheme.sources.is_empty() || !self.problem.scene.boundaries.iter().all(|b| still(&b.condition))
     }
 
     fn energy(&self) -> Option<String> {
         let risen = self.risen()?;
-        let degree = self.scene.scheme.degree;
+        let degree = self.problem.scene.scheme.degree;
         let lower = if degree > 1 { format!(", or scheme.degree = {}", degree - 1) } else { String::new() };
         Some(format!(
             "the energy had risen to {risen:.3} of the start and the work done, so the scheme was unstable before (ledger.csv \
@@ -154,18 +150,18 @@ impl Case<'_> {
     }
 
     fn has_memory(&self) -> bool {
-        !self.built.scheme.histories.is_empty()
+        !self.problem.scheme.histories.is_empty()
     }
 
     fn points(&self) -> Option<String> {
-        let Scene { scheme, cloud, .. } = self.scene;
+        let Scene { scheme, cloud, .. } = &self.problem.scene;
         let memory = self.has_memory();
         let gauss = Layout::InCells(seed::Layout::Gauss);
         if scheme.method != Method::AderDgmpm || cloud.layout == gauss {
             return None;
         }
-        let (mesh, line) = (&self.built.body.mesh, &self.built.scheme.operators.line);
-        let all = certify(mesh, line, Sampling::Cloud(&self.built.body.cloud));
+        let (mesh, line) = (&self.problem.body.mesh, &self.problem.scheme.operators.line);
+        let all = certify(mesh, line, Sampling::Cloud(&self.problem.body.cloud));
         let lebesgue = all.ok()?.iter().map(|c| c.lebesgue).fold(0.0, f64::max);
         let far = lebesgue > LEBESGUE;
         (memory || far).then(|| {
@@ -177,7 +173,7 @@ impl Case<'_> {
     }
 
     fn flux(&self) -> Option<String> {
-        let flux = self.scene.scheme.flux;
+        let flux = self.problem.scene.scheme.flux;
         let why = match flux {
             Flux::Dual if self.has_memory() => return None,
             Flux::Dual => {
@@ -192,7 +188,7 @@ impl Case<'_> {
     }
 
     fn law(&self) -> Option<String> {
-        let material = &self.scene.materials[self.built.body.material[self.lost.loss.cell]];
+        let material = &self.problem.scene.materials[self.problem.body.material[self.lost.loss.cell]];
         (material.law == "linear-elastic").then(|| {
             "a linear law does not stiffen where it is crushed: give law = \"neo-hookean\" for large strains".to_owned()
         })

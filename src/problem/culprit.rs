@@ -1,9 +1,9 @@
 //! Which expression of a scene is not finite: looked for once a run has lost stability, so that a run that goes well does
 //! not pay for it.
 
-use super::{Condition, Expression, Scene};
 use crate::mesh::Mesh;
 use crate::operators::Neighbour;
+use crate::scene::{Condition, Expression, Scene};
 use crate::step::{Scheme, Site};
 use std::collections::BTreeSet;
 

@@ -1,16 +1,14 @@
 //! The meshes of `[[regrid]]`, made from the scene and the state at hand.
 
-use super::build::read_mesh;
-use super::regrid::{Around, Criteria, NewMesh, Strip};
-use super::{Expression, Scene};
 use crate::cloud::Cloud;
 use crate::error::{Error, Result};
+use crate::io::{gmsh, read_mesh};
 use crate::mesh::{self, Mesh, map};
 use crate::observe::{Solution, View};
 use crate::operators::{Line, Sampling, certificate::certify};
 use crate::regrid::TensorGrid;
-use std::path::Path;
-use std::process::Command;
+use crate::scene::Scene;
+use crate::scene::regrid::{Around, Criteria, NewMesh, Strip};
 
 /// What a new grid may depend on.
 #[derive(Clone, Copy)]
@@ -51,8 +49,12 @@ impl Scene {
                     "strips need a mesh of the scene that is a grid of lines, of one group",
                 )
             })?,
-            NewMesh::Geometry { path, size } => gmsh(&self.resolve(path), size.as_ref(), now, time)
-                .map_err(|(what, remedy)| self.error(&key("geo"), what, remedy))?,
+            NewMesh::Geometry { path, size } => {
+                let size = size.as_ref().map(|size| move |x: [f64; 2]| size.eval(x, time));
+                let size = size.as_ref().map(|size| size as &dyn Fn([f64; 2]) -> f64);
+                let made = gmsh::program::mesh(&self.resolve(path), size, now);
+                made.map_err(|(what, remedy)| self.error(&key("geo"), what, remedy))?
+            }
         };
         self.check_mesh(&mesh)?;
         self.check_exact_materials(&mesh)?;
@@ -92,7 +94,7 @@ impl Scene {
                     }
                 }
                 NewMesh::Geometry { path, .. } => {
-                    if Command::new("gmsh").arg("--version").output().is_err() {
+                    if !gmsh::program::is_installed() {
                         let remedy = "install Gmsh (https://gmsh.info, or `pip install gmsh`), or give `mesh`";
                         return Err(self.error(
                             &format!("regrid.{rule}.geo"),
@@ -298,65 +300,6 @@ fn worst_shape(present: &Present) -> f64 {
         map::CORNER_XI.into_iter().map(of_corner).fold(f64::INFINITY, f64::min)
     };
     (0..view.mesh.cells.len()).map(shape).fold(f64::INFINITY, f64::min)
-}
-
-/// Runs Gmsh on a geometry, with a size field over the present mesh.
-fn gmsh(
-    geometry: &Path,
-    size: Option<&Expression>,
-    now: &Mesh,
-    time: f64,
-) -> std::result::Result<Mesh, (String, &'static str)> {
-    const REMEDY: &str = "give a .geo file that Gmsh meshes with quadrilaterals and named groups";
-    let fail = |what: String| (what, REMEDY);
-    let geometry = geometry.canonicalize().map_err(|why| fail(format!("{}: {why}", geometry.display())))?;
-    let folder = std::env::temp_dir().join(format!("dgmpm-gmsh-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).map_err(|why| fail(format!("{}: {why}", folder.display())))?;
-    let made = (|| {
-        let (script, out) = (folder.join("regrid.geo"), folder.join("regrid.msh"));
-        let mut text = format!("Merge \"{}\";\n", geometry.display());
-        if let Some(size) = size {
-            let field = folder.join("size.pos");
-            std::fs::write(&field, size_field(size, now, time)).map_err(|why| fail(why.to_string()))?;
-            text += &format!(
-                "Merge \"{}\";\nField[1] = PostView;\nField[1].ViewIndex = 0;\nBackground Field = 1;\n\
-                 Mesh.MeshSizeExtendFromBoundary = 0;\nMesh.MeshSizeFromPoints = 0;\n",
-                field.display()
-            );
-        }
-        std::fs::write(&script, text).map_err(|why| fail(why.to_string()))?;
-        let run =
-            Command::new("gmsh").args(["-2", "-v", "1", "-format", "msh41", "-o"]).arg(&out).arg(&script).output();
-        let run = run.map_err(|why| {
-            let what = format!("cannot run `gmsh`: {why}");
-            (
-                what,
-                "install Gmsh (https://gmsh.info, or `pip install gmsh`) so that `gmsh` is on the path, or give `mesh`",
-            )
-        })?;
-        if !run.status.success() {
-            let said = String::from_utf8_lossy(&run.stderr);
-            return Err(fail(format!("gmsh failed ({}): {}", run.status, said.lines().next().unwrap_or_default())));
-        }
-        read_mesh(&out).map_err(|why: Error| fail(why.to_string()))
-    })();
-    // What Gmsh left has no further use; a folder that stays does no harm.
-    let _ = std::fs::remove_dir_all(&folder);
-    made
-}
-
-/// The size at the nodes of a mesh as a view of Gmsh: two triangles a cell.
-fn size_field(size: &Expression, mesh: &Mesh, time: f64) -> String {
-    let mut text = "View \"size\" {\n".to_owned();
-    for cell in 0..mesh.cells.len() {
-        let x = mesh.corners(cell);
-        for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
-            let [p, q, r] = [x[a], x[b], x[c]];
-            let [s, t, u] = [p, q, r].map(|x| size.eval(x, time));
-            text += &format!("ST({},{},0,{},{},0,{},{},0){{{s},{t},{u}}};\n", p[0], p[1], q[0], q[1], r[0], r[1]);
-        }
-    }
-    text + "};\n"
 }
 
 #[cfg(test)]

@@ -1,13 +1,14 @@
 //! From a scene to the material points, and to those that the scheme samples on.
 
-use super::{Body, Cloud as Choice, Histories, Layout, Method, Scene};
 use crate::cloud::{Cloud, Locator, Pattern, body, from_points, seed};
 use crate::error::{Error, Place, Result};
 use crate::io::grid::Field;
 use crate::io::{cloud_file, points, store};
 use crate::mesh::Mesh;
 use crate::operators::carry::{Cause, Deficient};
-use crate::operators::{Line, carry};
+use crate::operators::certificate::{Certificate, Class, certify};
+use crate::operators::{Line, Sampling, carry};
+use crate::scene::{Body, Cloud as Choice, Histories, Layout, Material, Method, Scene};
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -53,13 +54,8 @@ pub struct Sampled {
     pub source: Vec<usize>,
     /// The cells that have virtual points in place of the given ones, and those that sample on others than their points.
     pub deficient: Vec<Deficient>,
-}
-
-impl Sampled {
-    /// Points as they are.
-    pub fn as_given(cloud: Cloud) -> Self {
-        Self { cloud, ..Self::default() }
-    }
+    /// The certificate of each cell on what the scheme samples there, without dt.
+    pub certificates: Vec<Certificate>,
 }
 
 impl Scene {
@@ -118,15 +114,22 @@ impl Scene {
     /// # Errors
     /// A part of the body without any point.
     pub fn sample(&self, mesh: &Mesh, cloud: Cloud) -> Result<Sampled> {
+        let line = Line::new(self.scheme.degree);
         if self.scheme.method != Method::AderDgmpm {
-            return Ok(Sampled::as_given(cloud));
+            let certificates = certify(mesh, &line, Sampling::Nodes)?;
+            return Ok(Sampled { cloud, certificates, ..Sampled::default() });
         }
         let memory = self.on_nodes(&self.material_of_cells(mesh));
-        let found = carry(mesh, &Line::new(self.scheme.degree), &cloud, &self.limits, &memory)?;
-        if found.deficient.iter().all(|cell| cell.cause == Cause::Memory) {
-            return Ok(Sampled { deficient: found.deficient, ..Sampled::as_given(cloud) });
+        let found = carry(mesh, &line, &cloud, &self.limits, &memory)?;
+        let mut certificates = found.certificates;
+        for (certificate, _) in certificates.iter_mut().zip(&memory).filter(|(_, memory)| **memory) {
+            certificate.class = Class::Nodes;
         }
-        let mut out = Sampled { cloud: Cloud { first: vec![0], xi: vec![] }, ..Sampled::default() };
+        let (deficient, cause) = (found.deficient, Cause::Memory);
+        if deficient.iter().all(|cell| cell.cause == cause) {
+            return Ok(Sampled { cloud, deficient, certificates, ..Sampled::default() });
+        }
+        let mut out = Sampled { cloud: Cloud { first: vec![0], xi: vec![] }, certificates, ..Sampled::default() };
         for cell in 0..mesh.cells.len() {
             let points = found.cloud.first[cell]..found.cloud.first[cell + 1];
             let (xi, source) = match memory.get(cell) {
@@ -139,13 +142,13 @@ impl Scene {
             out.cloud.xi.extend_from_slice(xi);
             out.cloud.first.push(out.cloud.xi.len());
         }
-        Ok(Sampled { deficient: found.deficient, ..out })
+        Ok(Sampled { deficient, ..out })
     }
 
     /// Whether each cell samples on its Gauss nodes although the method has points: its law has memory, and the scene does
     /// not keep the histories at the points. Empty: no cell does. `material` has the number of the material of each cell.
     pub fn on_nodes(&self, material: &[usize]) -> Vec<bool> {
-        let of = |m: &super::Material| m.histories == Some(Histories::Nodes);
+        let of = |m: &Material| m.histories == Some(Histories::Nodes);
         if self.scheme.method != Method::AderDgmpm || !self.materials.iter().any(of) {
             return vec![];
         }

@@ -1,7 +1,7 @@
 //! What is no error and yet seldom meant: parts that do not see each other, groups inside of the body, numbers that look like
 //! other units.
 
-use super::pipeline::Body;
+use super::{Cost, Problem};
 use crate::boundary::Data;
 use crate::mesh::parts::{EdgeCount, Part, parts};
 use crate::mesh::{BoundaryEdge, Link, Mesh};
@@ -26,13 +26,9 @@ pub fn of_mesh(mesh: &Mesh, links: &[[Link; 4]]) -> Vec<String> {
 }
 
 /// The notices before a run: those of its mesh, whose periodic boundaries connect, and of its start and first step, s.
-pub fn of_run(
-    scene: &Scene,
-    body: &Body,
-    (scheme, state): (&Scheme, &State),
-    survey: &Survey,
-    (steps, dt): (f64, f64),
-) -> Vec<String> {
+pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
+    let Problem { scene, body, scheme, state, .. } = problem;
+    let Cost { survey, steps, dt, .. } = cost;
     let (mesh, blocks) = (&body.mesh, &scheme.operators.blocks);
     let mut all: Vec<String> =
         in_parts(mesh, &parts(mesh.cells.len(), |cell| behind(blocks, cell))).into_iter().collect();
@@ -48,7 +44,7 @@ pub fn of_run(
                 .to_owned(),
         );
     }
-    if steps <= 1.0 {
+    if *steps <= 1.0 {
         all.push(format!(
             "the run is one step: it ends {:.3e} s after its start, and a step is {dt:.3e} s; times are in s, moduli in Pa, \
              densities in kg/m^3, lengths in m",

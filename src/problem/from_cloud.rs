@@ -1,11 +1,12 @@
 //! A start from material points alone: F, v and internal variables of a cloud file, on whatever grid.
 
-use super::{Field, Given, Method, Scene};
+use super::points::Given;
 use crate::error::Result;
 use crate::io::grid::{self, Kind};
 use crate::mesh::{Mesh, map};
 use crate::observe::Solution;
 use crate::operators::{carry, from_points};
+use crate::scene::{Field, Method, Scene};
 use crate::state::{State, UNKNOWNS};
 use crate::step::Scheme;
 

@@ -1,8 +1,7 @@
 //! What cells can carry, in words: classes, the worst cells, those with virtual points, the refusal of `--strict`, and
 //! where laws with memory sample.
 
-use super::pipeline::Body;
-use super::print::row;
+use super::{Body, Problem};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::operators::carry::{Cause, Deficient, stand_on_nodes};
@@ -14,6 +13,7 @@ const NAMED: usize = 3;
 
 /// Rows of the table: classes, and the worst cells where cells differ.
 pub fn rows(mesh: &Mesh, certificates: &[Certificate]) -> Vec<(String, String)> {
+    let row = |name: &str, value: String| (name.to_owned(), value);
     let count = |class: Class| certificates.iter().filter(|c| c.class == class).count();
     let classes = Class::NAMES.iter().map(|&(name, class)| (count(class), name)).filter(|(count, _)| *count > 0);
     let classes: Vec<String> = classes.map(|(count, name)| format!("{count} {name}")).collect();
@@ -49,14 +49,15 @@ pub fn memory(body: &Body) -> Option<String> {
 }
 
 /// The warning on internal variables that the scene keeps at points away from the Gauss nodes; none where none are.
-pub fn warning(scene: &Scene, body: &Body, certificates: &[Certificate]) -> Option<String> {
+pub fn warning(problem: &Problem) -> Option<String> {
+    let Problem { scene, body, .. } = problem;
     let at_points = |cell: &usize| scene.materials[body.material[*cell]].histories == Some(Histories::Points);
     if scene.scheme.method != Method::AderDgmpm {
         return None;
     }
     let nodes = Line::new(scene.scheme.degree).nodes();
     let away = (0..body.mesh.cells.len()).filter(at_points).filter(|&c| !stand_on_nodes(&nodes, body.cloud.of(c)));
-    let largest = away.map(|cell| certificates[cell].lebesgue).reduce(f64::max)?;
+    let largest = away.map(|cell| body.certificates[cell].lebesgue).reduce(f64::max)?;
     Some(format!(
         "histories = \"points\": this layout makes energy in plastic flow (face Lebesgue constant {largest:.2}; Taylor bars \
          gained 4 to 80 % and more); with histories = \"nodes\" or layout = \"gauss\" they gain none"
@@ -119,7 +120,7 @@ pub fn strict(scene: &Scene, body: &Body) -> Result<()> {
     }
     let m = scene.scheme.degree + 1;
     let limits = Limits { lattices: true, ..scene.limits };
-    let kept = body.certificates(scene)?.into_iter().enumerate();
+    let kept = body.certificates.iter().copied().enumerate();
     let lattices = kept.filter(|(_, c)| c.class != Class::Deficient && limits.cause(c, m * m).is_some());
     // Where the law has memory nothing is asked of the points.
     let replaced = body.deficient.iter().filter(|d| d.cause != Cause::Memory).map(|d| (d.cell, d.given));

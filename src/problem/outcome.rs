@@ -1,15 +1,13 @@
-//! What a regrid did: its lines on the terminal, and its row of `regrid.csv`.
+//! What a regrid did: in words, and as a row of `regrid.csv`.
 
-use super::super::print::say;
-use super::{Built, scale};
-use crate::regrid::Transfer;
-use crate::regrid::points::Placed;
-use crate::state::{State, UNKNOWNS};
+use super::Body;
+use super::rebuild::{Moved, scale};
+use crate::state::UNKNOWNS;
 use crate::step::Totals;
 use std::time::Instant;
 
 /// Names of the phases of a regrid, in order; `regrid.csv` has their seconds.
-const PHASES: [&str; 7] = ["mesh", "transfer", "points", "links", "matrices", "scheme", "files"];
+const PHASES: [&str; 6] = ["mesh", "transfer", "points", "matrices", "scheme", "files"];
 
 /// Columns of `regrid.csv` before the phases. Energies in J/m, areas in m^2.
 const COLUMNS: [&str; 19] = [
@@ -43,31 +41,25 @@ pub(super) fn columns() -> Vec<&'static str> {
 pub(super) struct Outcome<'a> {
     /// The number of the rule.
     pub rule: usize,
-    /// The grid before.
-    pub old: &'a Built,
-    /// And after.
-    pub new: &'a Built,
-    /// The state after.
-    pub state: &'a State,
-    /// The fields.
-    pub moved: &'a Transfer,
-    /// The points.
-    pub placed: &'a Placed,
+    /// Mesh and points before.
+    pub old: &'a Body,
+    /// The problem after.
+    pub new: &'a Moved,
     /// Totals before and after.
     pub totals: &'a [Totals; 2],
 }
 
 impl Outcome<'_> {
     fn copied(&self) -> usize {
-        self.moved.same.iter().flatten().count()
+        self.new.transfer.same.iter().flatten().count()
     }
 
     /// The error in the standard measure: over sqrt(int |F - 1|^2 + |v|^2 / c_p^2).
     fn error(&self) -> f64 {
-        let (scheme, u) = (&self.new.scheme, &self.moved.u);
+        let (scheme, u) = (&self.new.scheme, &self.new.transfer.u);
         let (n, scale) = (scheme.operators.nodes(), scale(scheme));
         let mut sum = 0.0;
-        for (cell, u) in u.chunks_exact(self.state.components * n).enumerate() {
+        for (cell, u) in u.chunks_exact(self.new.state.components * n).enumerate() {
             let (block, lane) = scheme.operators.blocks.slot[cell];
             for (a, mass) in scheme.operators.geometry.masses(&scheme.operators.line, block, lane).enumerate() {
                 for (k, scale) in scale[self.new.body.material[cell]].iter().enumerate().take(UNKNOWNS) {
@@ -76,7 +68,7 @@ impl Outcome<'_> {
                 }
             }
         }
-        if sum > 0.0 { self.moved.error / sum.sqrt() } else { self.moved.error }
+        if sum > 0.0 { self.new.transfer.error / sum.sqrt() } else { self.new.transfer.error }
     }
 
     /// The row of `regrid.csv`.
@@ -87,16 +79,16 @@ impl Outcome<'_> {
             before.deformation.iter().zip(after.deformation).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let count = |k: usize| k as f64;
         let mut row = vec![
-            count(self.state.step),
-            self.state.time,
+            count(self.new.state.step),
+            self.new.state.time,
             count(self.rule),
-            count(self.old.body.mesh.cells.len()),
+            count(self.old.mesh.cells.len()),
             count(self.new.body.mesh.cells.len()),
             count(self.copied()),
-            count(self.old.body.cloud.len()),
-            count(self.placed.cloud.len()),
-            count(self.placed.kept.iter().filter(|kept| **kept).count()),
-            count(self.placed.outside),
+            count(self.old.cloud.len()),
+            count(self.new.placed.cloud.len()),
+            count(self.new.placed.kept.iter().filter(|kept| **kept).count()),
+            count(self.new.placed.outside),
             before.kinetic,
             after.kinetic,
             before.strain,
@@ -105,28 +97,29 @@ impl Outcome<'_> {
             change(1),
             deformation,
             self.error(),
-            self.moved.uncovered[0] + self.moved.uncovered[1],
+            self.new.transfer.uncovered[0] + self.new.transfer.uncovered[1],
         ];
         row.extend(clock.seconds);
         row
     }
 
-    /// Says it.
-    pub fn print(&self, clock: &Clock) {
-        let (state, [before, after]) = (self.state, self.totals);
-        let how = if self.moved.structured { "lines" } else { "clipping" };
-        say(format!(
+    /// Lines for the terminal.
+    pub fn words(&self, clock: &Clock) -> Vec<String> {
+        let (state, [before, after]) = (&self.new.state, self.totals);
+        let (transfer, placed) = (&self.new.transfer, &self.new.placed);
+        let how = if transfer.structured { "lines" } else { "clipping" };
+        let first = format!(
             "regrid at step {}, t = {:.6e} s: {} -> {} cells ({} copied, by {how}), {} -> {} points ({} kept)",
             state.step,
             state.time,
-            self.old.body.mesh.cells.len(),
+            self.old.mesh.cells.len(),
             self.new.body.mesh.cells.len(),
             self.copied(),
-            self.old.body.cloud.len(),
-            self.placed.cloud.len(),
-            self.placed.kept.iter().filter(|kept| **kept).count(),
-        ));
-        say(format!(
+            self.old.cloud.len(),
+            placed.cloud.len(),
+            placed.kept.iter().filter(|kept| **kept).count(),
+        );
+        let energies = format!(
             "  error {:.3e}; kinetic {:.9e} -> {:.9e} J/m, strain {:.9e} -> {:.9e} J/m, momentum {:+.1e}, {:+.1e} kg/s",
             self.error(),
             before.kinetic,
@@ -135,21 +128,21 @@ impl Outcome<'_> {
             after.strain,
             after.momentum[0] - before.momentum[0],
             after.momentum[1] - before.momentum[1],
-        ));
-        if self.moved.uncovered != [0.0; 2] {
-            let [new, old] = self.moved.uncovered;
-            say(format!(
+        );
+        let mut words = vec![first, energies];
+        if transfer.uncovered != [0.0; 2] {
+            let [new, old] = transfer.uncovered;
+            words.push(format!(
                 "  the grids differ at their boundary: {new:.3e} m^2 of the new one filled, {old:.3e} m^2 of the old one left out"
             ));
         }
-        if self.placed.outside > 0 {
-            say(format!(
-                "  {} points lie outside of the new mesh, and are gone with their histories",
-                self.placed.outside
-            ));
+        if placed.outside > 0 {
+            let points = placed.outside;
+            words.push(format!("  {points} points lie outside of the new mesh, and are gone with their histories"));
         }
         let phases: Vec<String> = PHASES.iter().zip(clock.seconds).map(|(name, s)| format!("{name} {s:.4}")).collect();
-        say(format!("  seconds: {}", phases.join(", ")));
+        words.push(format!("  seconds: {}", phases.join(", ")));
+        words
     }
 }
 
@@ -166,8 +159,10 @@ impl Clock {
     }
 
     /// Books the time since the last lap for a phase.
-    pub fn lap(&mut self, phase: usize) {
-        self.seconds[phase] = self.last.elapsed().as_secs_f64();
+    pub fn lap(&mut self, phase: &str) {
+        if let Some(at) = PHASES.iter().position(|name| *name == phase) {
+            self.seconds[at] = self.last.elapsed().as_secs_f64();
+        }
         self.last = Instant::now();
     }
 }

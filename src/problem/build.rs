@@ -1,0 +1,193 @@
+//! Where names become types: from a scene to mesh, laws, conditions, sources, time integration and scheme.
+
+use crate::basis::TimeBasis;
+use crate::boundary::{self, Data};
+use crate::cloud::Cloud;
+use crate::error::Result;
+use crate::exact::ExactForce;
+use crate::io::read_mesh;
+use crate::lane::Kernel;
+use crate::mesh::{self, Link, Mesh};
+use crate::operators::{Needs, Operators, Sampling};
+use crate::run::Settings;
+use crate::scene::{self, Boundary, Condition, Curl, Expression, Mesh as Source, Method, Scene, Step, Sweeps};
+use crate::source::{self, BodyForce};
+use crate::step::{Control, Histories, Method as Integration, Relax, Scheme, Sweeps as Picard, Tableau, cfl};
+use std::sync::Arc;
+
+/// An expression as data of boundary or source.
+fn data(expression: &Expression) -> Data {
+    let expression = expression.clone();
+    Arc::new(move |x, t| expression.eval(x, t))
+}
+
+fn pair(value: &[Expression; 2]) -> [Data; 2] {
+    value.each_ref().map(data)
+}
+
+impl Scene {
+    /// The mesh of the scene, its groups checked.
+    ///
+    /// # Errors
+    /// Bad input, with its place.
+    pub fn build_mesh(&self) -> Result<Mesh> {
+        let mesh = match &self.mesh {
+            Source::Rectangle { size, cells } => mesh::rectangle(*size, *cells)?,
+            Source::File(path) => read_mesh(&self.resolve(path))?,
+        };
+        self.check_mesh(&mesh)?;
+        self.check_exact_materials(&mesh)?;
+        Ok(mesh)
+    }
+
+    /// Pairs of boundary groups (by number) that are periodic to each other, each once.
+    pub fn periodic_groups(&self, mesh: &Mesh) -> Vec<[usize; 2]> {
+        let number = |name: &String| mesh.edge_groups.iter().position(|group| group == name);
+        let mut pairs: Vec<[usize; 2]> = Vec::new();
+        for boundary in &self.boundaries {
+            let Condition::Periodic { partner } = &boundary.condition else { continue };
+            // `check_mesh` has refused groups that the mesh lacks.
+            let (Some(a), Some(b)) = (number(&boundary.group), number(partner)) else { continue };
+            if !pairs.contains(&[b, a]) {
+                pairs.push([a, b]);
+            }
+        }
+        pairs
+    }
+
+    /// What lies behind the faces of each cell: the mesh's neighbours, and those across periodic boundaries.
+    ///
+    /// # Errors
+    /// A mesh whose faces or periodic groups do not fit together.
+    pub fn links(&self, mesh: &Mesh) -> Result<Vec<[Link; 4]>> {
+        Ok(mesh::periodic_links(mesh, &self.periodic_groups(mesh))?)
+    }
+
+    /// The number of the `[[material]]` of each cell.
+    pub fn material_of_cells(&self, mesh: &Mesh) -> Vec<usize> {
+        let of_group = |group: &String| self.materials.iter().position(|m| m.group.as_ref().is_none_or(|g| g == group));
+        // `check_mesh` has refused groups without a material.
+        let numbers: Vec<usize> = mesh.groups.iter().map(|group| of_group(group).unwrap_or(0)).collect();
+        mesh.cell_group.iter().map(|&group| numbers[group]).collect()
+    }
+
+    /// What the method needs of the operators.
+    pub fn needs<'a>(&self, cloud: &'a Cloud) -> Needs<'a> {
+        let sampling = match self.scheme.method {
+            Method::AderDgmpm => Some(Sampling::Cloud(cloud)),
+            Method::AderDgfem => Some(Sampling::Nodes),
+            Method::RkDgfem => None,
+        };
+        // Constants have no curl.
+        let curl_free = self.scheme.degree > 0 && self.curl != Curl::Off;
+        Needs { degree: self.scheme.degree, sampling, curl_free }
+    }
+
+    /// Time integration.
+    pub fn integration(&self) -> Integration {
+        let (n, n_t) = (self.scheme.degree, self.scheme.time_degree);
+        match self.scheme.method {
+            Method::RkDgfem => Integration::RungeKutta(Tableau::of_degree(n_t)),
+            Method::AderDgmpm | Method::AderDgfem => {
+                let time = TimeBasis::new(n_t);
+                let sweeps = match self.scheme.sweeps {
+                    Sweeps::Ladder => Picard::ladder(&time),
+                    Sweeps::Paper => Picard::paper(&time, n.max(n_t) + 1),
+                };
+                Integration::Ader { time, sweeps }
+            }
+        }
+    }
+
+    /// The scheme.
+    pub fn build_scheme(&self, mesh: &Mesh, operators: Operators, kernel: Kernel) -> Scheme {
+        let condition = |group: &String| self.boundaries.iter().find(|b| b.group == *group).map(condition);
+        // `check_mesh` has refused groups without a condition; no face looks at that of a periodic group.
+        let free = || Box::new(boundary::Free) as Box<dyn boundary::Boundary>;
+        let boundaries = mesh.edge_groups.iter().map(|group| condition(group).unwrap_or_else(free)).collect();
+        let control = |relax, alpha| Control { relax, rate: alpha * self.scheme.degree as f64 };
+        let curl = match self.curl {
+            Curl::Rotation { alpha } => Some(control(Relax::Rotation, alpha)),
+            Curl::Lcf { alpha } => Some(control(Relax::Gradient, alpha)),
+            Curl::Off => None,
+        };
+        let mut sources: Vec<_> = self.sources.iter().map(|s| self.source(s)).collect();
+        // A solution has a body force everywhere and always, or nowhere.
+        if let Some(exact) = self.build_exact().filter(|exact| exact.body_force([0.0; 2], 0.0).is_some()) {
+            sources.push(Box::new(ExactForce(exact)));
+        }
+        let laws = self.laws();
+        Scheme {
+            histories: Histories::new(&operators, &laws),
+            operators,
+            laws,
+            method: self.integration(),
+            flux: self.scheme.flux,
+            boundaries,
+            sources,
+            // Constants have no curl.
+            curl: curl.filter(|_| self.scheme.degree > 0),
+            kernel,
+        }
+    }
+
+    fn source(&self, source: &scene::Source) -> Box<dyn source::Source> {
+        let named = |m: &scene::Material| source.group.is_some() && m.group == source.group;
+        Box::new(BodyForce { value: pair(&source.value), material: self.materials.iter().position(named) })
+    }
+
+    /// The speeds that conditions prescribe: the group, and one component (along N) or both, m/s.
+    pub fn prescribed_speeds(&self) -> Vec<(&str, Vec<Data>)> {
+        let of = |boundary: &Boundary| match &boundary.condition {
+            Condition::Wall { speed } => vec![data(speed)],
+            Condition::Velocity(value) => pair(value).to_vec(),
+            _ => vec![],
+        };
+        self.boundaries.iter().map(|boundary| (boundary.group.as_str(), of(boundary))).collect()
+    }
+
+    /// dt c / h and the end.
+    ///
+    /// # Errors
+    /// A step beyond the stability limit.
+    pub fn settings(&self) -> Result<Settings> {
+        let (n, integration) = (self.scheme.degree, self.integration());
+        let limit = cfl::limit(&integration, n);
+        if limit == 0.0 {
+            return Err(self.error(
+                "scheme.time_degree",
+                format!("explicit Euler (time_degree = 0) is unstable at every step for degree {n}"),
+                "give time_degree from 1 to 6 (the default is the degree), or degree = 0",
+            ));
+        }
+        let (key, safety) = match self.scheme.step {
+            Step::Safety(safety) => ("scheme.safety", safety),
+            Step::Cfl(cfl) => ("scheme.cfl", cfl::safety_of_cfl(cfl, &integration, n)),
+        };
+        if safety > 1.0 {
+            let allowed = limit * (2 * n + 1) as f64;
+            return Err(self.error(
+                key,
+                format!("the step is {safety:.2} of the stability limit in 2D (dt c / h = {limit:.4} for degree {n}) and blows up"),
+                format!("give scheme.safety up to 1 (0.9 is the default), or scheme.cfl up to {allowed:.3}"),
+            ));
+        }
+        Ok(Settings { end: self.end, courant: safety * limit, watch: self.watch })
+    }
+}
+
+/// The registry of boundary conditions.
+fn condition(boundary: &Boundary) -> Box<dyn boundary::Boundary> {
+    let zero = || data(&Expression::number(0.0));
+    match &boundary.condition {
+        // The faces of a periodic group are inner faces: nothing asks for its condition.
+        Condition::Free | Condition::Periodic { .. } => Box::new(boundary::Free),
+        Condition::Symmetry => Box::new(boundary::Wall { speed: None }),
+        Condition::Wall { speed } if speed.constant() == Some(0.0) => Box::new(boundary::Wall { speed: None }),
+        Condition::Wall { speed } => Box::new(boundary::Wall { speed: Some(data(speed)) }),
+        Condition::Clamped => Box::new(boundary::Velocity { value: [zero(), zero()] }),
+        Condition::Velocity(value) => Box::new(boundary::Velocity { value: pair(value) }),
+        Condition::Traction(value) => Box::new(boundary::Traction { value: pair(value) }),
+        Condition::Absorbing => Box::new(boundary::Absorbing),
+    }
+}

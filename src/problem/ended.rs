@@ -1,0 +1,73 @@
+//! How a run ended: its status, the state that is kept, and what a user is told.
+
+use super::Problem;
+use super::lost::{Case, kept};
+use crate::error::{Error, Result};
+use crate::observe;
+use crate::run::{Folder, Report, Stop};
+use crate::step::EnergyMade;
+use serde_json::Value;
+use std::path::PathBuf;
+
+/// How a run ended.
+pub struct Ended {
+    /// For `summary.json`: done, unstable, interrupted or failed.
+    pub status: &'static str,
+    /// What is known of a loss of stability, for `summary.json`.
+    pub loss: Option<Value>,
+    /// The error for the user, where there is one.
+    pub result: Result<()>,
+}
+
+impl Ended {
+    /// Keeps a good state of a run that stopped, in its folder, and says why it ended.
+    pub fn of(ended: std::result::Result<(), Stop>, problem: &Problem, report: &Report, folder: &Folder) -> Self {
+        let Err(stop) = ended else { return Self { status: "done", loss: None, result: Ok(()) } };
+        let Problem { scheme, state, files, .. } = problem;
+        // That before a step which lost stability is nearly lost itself.
+        let good = match &stop {
+            Stop::Unstable(lost) => &lost.kept,
+            Stop::EnergyMade(made) => &made.1,
+            _ => state,
+        };
+        let written = problem.keep_files(folder);
+        let file = written.and_then(|()| observe::write(scheme, good, files, &folder.snapshots()));
+        let ended = |status, error| Self { status, loss: None, result: Err(error) };
+        match stop {
+            Stop::Output(error) => ended("failed", error),
+            Stop::Interrupted => {
+                let place = match &file {
+                    Ok(path) => format!("the last good state is in {}", path.display()),
+                    Err(why) => format!("the last good state could not be kept: {why}"),
+                };
+                let at = format!("at step {}, t = {:.6e} s; {place}", state.step, state.time);
+                ended("interrupted", Error::Interrupted(at))
+            }
+            Stop::EnergyMade(made) => ended("unstable", too_much(&made.0, &file)),
+            Stop::Unstable(lost) => {
+                let case = Case { problem, report, lost: &lost };
+                let (loss, error) = (Some(case.json()), case.error(&kept(&lost, &file)));
+                let status = if let Error::Unstable { .. } = error { "unstable" } else { "failed" };
+                Self { status, loss, result: Err(error) }
+            }
+        }
+    }
+}
+
+/// The error of a run that made so much energy that it was stopped.
+fn too_much(made: &EnergyMade, kept: &Result<PathBuf>) -> Error {
+    let place = match kept {
+        Ok(path) => format!("a state of some steps before is in {}", path.display()),
+        Err(why) => format!("the state of some steps before could not be kept: {why}"),
+    };
+    Error::Unstable {
+        what: format!("the body has energy that nothing gave to it: {made}"),
+        time: made.time,
+        step: made.step,
+        remedy: format!(
+            "{place}; see ledger.csv for when it began; [watch] energy = {:.0e} or \"off\" lets it go on; another [curl] control, \
+             points on the Gauss nodes ([cloud] layout = \"gauss\") or a finer mesh may hold it",
+            10.0 * made.share
+        ),
+    }
+}

@@ -1,0 +1,162 @@
+//! The snapshots of a run for ParaView, meshio and DOLFINx.
+
+use super::Body;
+use crate::basis::Lagrange;
+use crate::cloud::Cloud;
+use crate::error::{Error, Result};
+use crate::io::grid::Field as Values;
+use crate::io::snapshot::{GridFiles, Snapshot};
+use crate::io::{mesh_file, pvd, snapshot, vtu, xdmf};
+use crate::material::Law;
+use crate::observe::{Field, Solution, export};
+use crate::run::Folder;
+use crate::scene::Scene;
+use std::path::{Path, PathBuf};
+
+/// The snapshots of a run, and what all of them share.
+pub struct Export {
+    folder: Folder,
+    scene: Scene,
+    laws: Vec<Law>,
+    basis: Lagrange,
+    fields: Vec<Field>,
+    files: Vec<(usize, PathBuf)>,
+    out: PathBuf,
+}
+
+/// A grid of the run.
+struct Sheet {
+    files: GridFiles,
+    body: Body,
+    /// Where internal variables stand.
+    places: Cloud,
+    cell_fields: Vec<Values>,
+}
+
+impl Export {
+    /// The snapshots of the folder of a run.
+    ///
+    /// # Errors
+    /// A folder that holds no run or no snapshot; one that cannot be written to.
+    pub fn new(folder: &Folder) -> Result<Self> {
+        if !folder.scene().is_file() {
+            let what = format!("{} is not the folder of a run: it holds no scene.toml", folder.root.display());
+            return Err(Error::input(what, "give the folder that `dgmpm run` has written, such as runs/square"));
+        }
+        let files = if folder.snapshots().is_dir() { snapshot::list(&folder.snapshots())? } else { vec![] };
+        if files.is_empty() {
+            let what = format!("{} holds no snapshot", folder.snapshots().display());
+            return Err(Error::input(what, "run a scene with an [[output]] of kind = \"fields\""));
+        }
+        let scene = Scene::load(&folder.scene(), &[])?;
+        let (laws, basis, fields) = (scene.laws(), Lagrange::new(scene.scheme.degree), scene.export_fields());
+        let out = folder.export();
+        std::fs::create_dir_all(&out).map_err(|why| Error::output(&out, why))?;
+        Ok(Self { folder: folder.clone(), laws, basis, fields, files, out, scene })
+    }
+
+    /// Number of snapshots.
+    pub fn count(&self) -> usize {
+        self.files.len()
+    }
+
+    /// The folder that is written to.
+    pub fn out(&self) -> &Path {
+        &self.out
+    }
+
+    fn sheet(&self, files: &GridFiles) -> Result<Sheet> {
+        let mut body = Body::read(&self.scene, &self.folder, files)?;
+        if body.certificates.is_empty() {
+            // A grid that came in by a regrid, or a run of an older version.
+            body.certify(&self.scene)?;
+        }
+        let cell_fields = export::cell_fields(&body.mesh, &body.certificates, &body.material);
+        let places = body.places(&self.scene).into_owned();
+        Ok(Sheet { files: files.clone(), body, places, cell_fields })
+    }
+
+    /// The number of internal variables of all points of a grid.
+    fn internal(&self, sheet: &Sheet) -> usize {
+        let of = |(cell, &law): (usize, &usize)| self.laws[law].internal().len() * sheet.places.of(cell).len();
+        sheet.body.material.iter().enumerate().map(of).sum()
+    }
+
+    /// Reads the snapshots, each with its own grid, and hands their solutions to `use_it`, with whether the grid is new.
+    fn each(&self, mut use_it: impl FnMut(usize, &Sheet, &Solution, f64, bool) -> Result<()>) -> Result<()> {
+        let mut last: Option<Sheet> = None;
+        for (step, path) in &self.files {
+            let snapshot = Snapshot::read(path)?;
+            let (sheet, is_new) = match last.take() {
+                Some(sheet) if sheet.files == snapshot.grid => (sheet, false),
+                _ => (self.sheet(&snapshot.grid)?, true),
+            };
+            let fits = snapshot.cells() == sheet.body.mesh.cells.len() && snapshot.degree + 1 == self.basis.len();
+            if !fits || snapshot.internal.len() != self.internal(&sheet) {
+                let what = format!("{} does not belong to the scene and mesh of this run", path.display());
+                return Err(Error::input(what, "run the scene again with --force"));
+            }
+            let solution =
+                Solution::of_snapshot(&snapshot, &self.basis, &self.laws, &sheet.body.material, &sheet.places);
+            use_it(*step, &sheet, &solution, snapshot.time, is_new)?;
+            last = Some(sheet);
+        }
+        Ok(())
+    }
+
+    /// Fields that the solution has.
+    fn fields(&self, solution: &Solution) -> Vec<Field> {
+        let there = |field: &Field| *field != Field::Displacement || solution.has_displacement();
+        self.fields.iter().copied().filter(there).collect()
+    }
+
+    /// VTU of grid and material points, with .pvd series.
+    ///
+    /// # Errors
+    /// A snapshot that does not belong to the run; a file that cannot be written.
+    pub fn vtu(&self) -> Result<()> {
+        let (mut grids, mut points) = (Vec::new(), Vec::new());
+        self.each(|step, sheet, solution, time, _| {
+            let (grid_path, point_path) =
+                (self.out.join(format!("grid_{step:06}.vtu")), self.out.join(format!("points_{step:06}.vtu")));
+            let (fields, body) = (self.fields(solution), &sheet.body);
+            let mut grid = export::grid(&body.mesh, solution, &fields);
+            grid.cell_fields = sheet.cell_fields.clone();
+            vtu::write_grid(&grid_path, &grid)?;
+            vtu::write_points(
+                &point_path,
+                &export::points(&body.mesh, &body.cloud, &body.virtual_points, solution, &fields),
+            )?;
+            grids.push((time, grid_path));
+            points.push((time, point_path));
+            Ok(())
+        })?;
+        pvd::write_series(&self.out.join("grid.pvd"), &grids)?;
+        pvd::write_series(&self.out.join("points.pvd"), &points)
+    }
+
+    /// XDMF + HDF5: the series, each time on its grid; the mesh alone is that of the start.
+    ///
+    /// # Errors
+    /// A snapshot that does not belong to the run; a file that cannot be written.
+    pub fn xdmf(&self) -> Result<()> {
+        let first = mesh_file::read_mesh(&self.folder.mesh())?;
+        xdmf::write_mesh(&self.out.join("mesh.xdmf"), &first)?;
+        xdmf::write_boundary(&self.out.join("boundary.xdmf"), &first)?;
+        let mut series: Option<xdmf::Series> = None;
+        self.each(|_, sheet, solution, time, is_new| {
+            let grid = export::grid(&sheet.body.mesh, solution, &self.fields(solution));
+            let series = match &mut series {
+                Some(series) => {
+                    if is_new {
+                        series.regrid(&grid)?;
+                    }
+                    series
+                }
+                none => none.insert(xdmf::Series::create(&self.out.join("series.xdmf"), &grid)?),
+            };
+            series.push(time, &grid.point_fields, &sheet.cell_fields)
+        })?;
+        series.map_or(Ok(()), xdmf::Series::finish)
+    }
+}

@@ -1,0 +1,73 @@
+//! The state of a snapshot as the initial state of a run.
+
+use super::{Body, Problem, Setup};
+use crate::error::{Error, Result};
+use crate::io::snapshot::Snapshot;
+use crate::run::Folder;
+use crate::scene::Scene;
+use crate::state::{State, UNKNOWNS};
+use crate::step::Scheme;
+use std::path::Path;
+
+impl Problem {
+    /// The problem of a stopped run at one of its snapshots, on the grid that it had there.
+    ///
+    /// # Errors
+    /// Files that cannot be read; a snapshot that does not belong to the scene and mesh of the run.
+    pub fn of_snapshot(scene: &Scene, folder: &Folder, snapshot: &Snapshot) -> Result<Self> {
+        let body = Body::read(scene, folder, &snapshot.grid)?;
+        Setup::of(scene).build_from(body, |_, scheme| {
+            let blocks = &scheme.operators.blocks;
+            if snapshot.cells() != blocks.slot.len() || snapshot.degree != scheme.operators.degree {
+                let what = "the snapshot does not belong to the scene and mesh of this run";
+                return Err(Error::input(what, "run the scene again with --force"));
+            }
+            let components = if snapshot.displacement.is_empty() { UNKNOWNS } else { UNKNOWNS + 2 };
+            Ok(unpacked(snapshot, scheme, components))
+        })
+    }
+}
+
+/// The state of a snapshot, with its time and step.
+fn unpacked(snapshot: &Snapshot, scheme: &Scheme, components: usize) -> State {
+    let blocks = &scheme.operators.blocks;
+    let state = State::pack(blocks, scheme.operators.nodes(), components, &snapshot.unknowns(components));
+    let unheld = blocks.pack(&snapshot.unheld, snapshot.unheld_stride(), |_| 0.0);
+    let mut state = State { time: snapshot.time, step: snapshot.step, unheld, ..state };
+    scheme.set_internal(&mut state, &snapshot.internal);
+    state
+}
+
+impl Scene {
+    /// The state of a snapshot, with its time and step.
+    ///
+    /// # Errors
+    /// A snapshot of another grid, degree, law or time.
+    pub(super) fn state_of_snapshot(&self, path: &Path, scheme: &Scheme) -> Result<State> {
+        let snapshot = Snapshot::read(path)?;
+        let cells = scheme.operators.blocks.slot.len();
+        let fail = |what: String, remedy: &str| self.error("initial.snapshot", what, remedy);
+        if snapshot.cells() != cells || snapshot.degree != scheme.operators.degree {
+            let (given, degree) = (snapshot.cells(), snapshot.degree);
+            let what = format!(
+                "the snapshot has {given} cells of degree {degree}, the scene {cells} of {}",
+                scheme.operators.degree
+            );
+            return Err(fail(what, "give the mesh of that run, or bring it over by `dgmpm regrid`"));
+        }
+        if snapshot.time >= self.end {
+            let what = format!("the snapshot is at {:e} s, and the run ends at {:e} s", snapshot.time, self.end);
+            return Err(fail(what, "give a later time.end"));
+        }
+        if self.wants_displacement() && snapshot.displacement.is_empty() {
+            let what = "an output asks for the displacement, which the snapshot lacks".to_owned();
+            return Err(fail(what, "leave out the field `displacement` and the balance of the ledger"));
+        }
+        if snapshot.internal.len() != scheme.virgin_internal().len() {
+            let what = "the snapshot has the internal variables of other laws or points".to_owned();
+            return Err(fail(what, "give the materials and the cloud of that run"));
+        }
+        // Where no output asks for it, the displacement may count from here: what is held are jumps that come now.
+        Ok(unpacked(&snapshot, scheme, self.components()))
+    }
+}

@@ -1,0 +1,65 @@
+//! The input of a run in its folder, so that the folder can be moved and run again.
+
+use super::{Files, Problem};
+use crate::error::{Error, Result};
+use crate::io::cloud_file::{self, More};
+use crate::io::{mesh_file, pending, read_mesh};
+use crate::observe::{Solution, export};
+use crate::operators::Certificate;
+use crate::run::Folder;
+use crate::scene::portable;
+use crate::scene::regrid::NewMesh;
+use std::path::Path;
+
+/// Writes scene, mesh and cloud into a run folder. Paths of the scene are replaced by those of the folder. The initial state is
+/// written at the points where the scene takes it from there.
+///
+/// # Errors
+/// Files that cannot be read or written.
+pub fn write_input(problem: &Problem, files: &Files, folder: &Folder, certificates: Vec<Certificate>) -> Result<()> {
+    let Problem { scene, body, scheme, state, .. } = problem;
+    mesh_file::write_mesh(&folder.mesh(), &body.mesh)?;
+    write_later_grids(problem, folder)?;
+    if let Some(snapshot) = &scene.initial.snapshot {
+        copy(&scene.resolve(snapshot), &folder.root.join("initial.h5"))?;
+    }
+    let fields = match scene.initial.from_cloud {
+        true => {
+            let solution = Solution::of_state(scheme, state, &body.material);
+            export::point_fields(&body.mesh, &body.cloud, &solution, &scene.fields_of_points(&solution))
+        }
+        false => vec![],
+    };
+    let more = More { virtual_points: body.virtual_points.clone(), fields, certificates };
+    cloud_file::write_with(&folder.cloud(), &body.cloud, &body.mesh, &more)?;
+    let text = scene.portable_toml(files.mesh.is_some(), files.cloud.is_some());
+    pending::write_text(&folder.scene(), &text)
+}
+
+/// The files that `[[regrid]]` names.
+fn write_later_grids(problem: &Problem, folder: &Folder) -> Result<()> {
+    let scene = &problem.scene;
+    for (rule, regrid) in scene.regrids.iter().enumerate() {
+        match &regrid.grid {
+            NewMesh::Files(files) => {
+                for (k, file) in files.iter().enumerate() {
+                    let mesh = read_mesh(&scene.resolve(file))?;
+                    mesh_file::write_mesh(&folder.root.join(portable::regrid_file(rule, k)), &mesh)?;
+                }
+            }
+            NewMesh::Geometry { path, .. } => {
+                copy(&scene.resolve(path), &folder.root.join(portable::geometry_file(rule)))?;
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Copies a file, unless it is there already.
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    if from.canonicalize().ok().is_some_and(|from| to.canonicalize().is_ok_and(|to| to == from)) {
+        return Ok(());
+    }
+    std::fs::copy(from, to).map(drop).map_err(|why| Error::output(to, why))
+}

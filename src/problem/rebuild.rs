@@ -1,0 +1,254 @@
+//! Another grid in mid-run, `[[regrid]]`, and for a stopped run, `dgmpm regrid`. Mesh, points, operators and scheme are made anew
+//! and the state is brought over; time and step go on. Where grid and points are the same nothing is touched, so that no bit
+//! changes.
+
+use super::outcome::{Clock, Outcome, columns};
+use super::outputs::schedule_of;
+use super::{Body, Present, Problem, Recent};
+use crate::cloud::Cloud;
+use crate::error::Result;
+use crate::io::csv::Table;
+use crate::io::hash;
+use crate::io::snapshot::GridFiles;
+use crate::mesh::Mesh;
+use crate::observe::{Schedule, View};
+use crate::operators::{Limits, Operators};
+use crate::regrid::points::{Demand, Placed, Policy, histories, place};
+use crate::regrid::{self, Field, Grid, Transfer};
+use crate::run::{Folder, Pause};
+use crate::scene::{Method, Scene, What, When};
+use crate::state::State;
+use crate::step::{Scheme, Totals};
+use std::collections::HashMap;
+
+/// A problem on another grid.
+pub struct Moved {
+    /// Mesh and points.
+    pub body: Body,
+    /// The scheme.
+    pub scheme: Scheme,
+    /// The state.
+    pub state: State,
+    /// How the fields came over.
+    pub transfer: Transfer,
+    /// What became of the points.
+    pub placed: Placed,
+}
+
+/// The rules of a scene, and what has come of them.
+pub struct Regrids<'a> {
+    scene: Scene,
+    folder: Option<&'a Folder>,
+    schedules: Vec<Schedule>,
+    /// How often each rule has fired.
+    fired: Vec<usize>,
+    /// The rule that fired last, and the mesh that it asks for.
+    next: Option<(usize, Result<Mesh>)>,
+    material: Vec<usize>,
+    cloud: Cloud,
+    recent: Recent,
+    files: HashMap<String, GridFiles>,
+    table: Option<Table>,
+}
+
+impl Pause for Regrids<'_> {
+    fn stop(&self, time: f64) -> Option<f64> {
+        self.schedules.iter().filter_map(|schedule| schedule.stop(time)).reduce(f64::min)
+    }
+
+    fn due(&mut self, view: &View) -> bool {
+        let (step, time) = (view.state.step, view.state.time);
+        let present = Present { view, cloud: &self.cloud, material: &self.material };
+        for rule in 0..self.schedules.len() {
+            if self.schedules[rule].due(step, time, view.dt) && self.scene.regrid_is_due(rule, &present) {
+                let mesh = self.scene.regrid_mesh(rule, self.fired[rule], &present);
+                self.fired[rule] += 1;
+                self.next = Some((rule, mesh));
+            }
+        }
+        self.next.is_some()
+    }
+}
+
+impl<'a> Regrids<'a> {
+    /// The rules of a scene at the start of a run; files go to `folder` where there is one.
+    ///
+    /// # Errors
+    /// A table that cannot be made in the folder.
+    pub fn new(problem: &Problem, folder: Option<&'a Folder>) -> Result<Self> {
+        let (scene, start, first) = (problem.scene.clone(), &problem.state, &problem.body);
+        let mut schedules: Vec<Schedule> =
+            scene.regrids.iter().map(|rule| schedule_of(&rule.when, rule.exact_times)).collect();
+        // `every` and `every_steps` count from the start, whose grid is that of [mesh]; `at` may name it.
+        for (schedule, rule) in schedules.iter_mut().zip(&scene.regrids) {
+            if !matches!(rule.when, When::At(_)) && rule.criteria == Default::default() {
+                schedule.due(start.step, start.time, 0.0);
+            }
+        }
+        let table = match folder.filter(|_| !scene.regrids.is_empty()) {
+            Some(folder) => Some(Table::create(&folder.regrids(), &columns())?),
+            None => None,
+        };
+        let files = HashMap::from([(key_of_files(first), problem.files.clone())]);
+        let fired = vec![0; schedules.len()];
+        let (material, cloud) = (first.material.clone(), first.cloud.clone());
+        let recent = Recent::default();
+        Ok(Self { scene, folder, schedules, fired, next: None, material, cloud, recent, files, table })
+    }
+
+    /// Puts the grid that is due in place of that of `problem`, and the state on it; what happened in words, and totals before
+    /// and after, none where the grid is the same.
+    ///
+    /// # Errors
+    /// A mesh that cannot be made or does not fit the body.
+    pub fn rebuild(&mut self, problem: &mut Problem) -> Result<(Vec<String>, Option<[Totals; 2]>)> {
+        let Some((rule, mesh)) = self.next.take() else { return Ok((vec![], None)) };
+        let mut clock = Clock::new();
+        let mesh = mesh?;
+        clock.lap("mesh");
+        let (policy, recent) = (self.scene.regrids[rule].points, &mut self.recent);
+        let moved = problem.moved(mesh, policy, |scene, body| recent.operators(scene, body), &mut clock)?;
+        let (step, time) = (problem.state.step, problem.state.time);
+        let Some(moved) = moved else {
+            return Ok((vec![format!("regrid at step {step}, t = {time:.6e} s: the grid is the same")], None));
+        };
+        let totals = [problem.scheme.totals(&problem.state), moved.scheme.totals(&moved.state)];
+        clock.lap("scheme");
+        let files = self.write(&moved.body, step)?;
+        clock.lap("files");
+        (self.material, self.cloud) = (moved.body.material.clone(), moved.body.cloud.clone());
+        let outcome = Outcome { rule, old: &problem.body, new: &moved, totals: &totals };
+        let words = outcome.words(&clock);
+        if let Some(table) = &mut self.table {
+            table.push(&outcome.row(&clock))?;
+            table.flush()?;
+        }
+        let Moved { body, scheme, state, .. } = moved;
+        (problem.body, problem.scheme, problem.state, problem.files) = (body, scheme, state, files);
+        Ok((words, Some(totals)))
+    }
+
+    /// Writes mesh and points beside those of the start, each grid once; nothing where no output takes snapshots.
+    fn write(&mut self, body: &Body, step: usize) -> Result<GridFiles> {
+        let snapshots = self.scene.outputs.iter().any(|output| output.what == What::Fields);
+        let Some(folder) = self.folder.filter(|_| snapshots) else { return Ok(GridFiles::after(step)) };
+        let key = key_of_files(body);
+        if let Some(files) = self.files.get(&key) {
+            return Ok(files.clone());
+        }
+        let files = GridFiles::after(step);
+        body.write(folder, &files)?;
+        self.files.insert(key, files.clone());
+        Ok(files)
+    }
+}
+
+fn key_of_files(body: &Body) -> String {
+    hash::of_mesh(&body.mesh) + &hash::of_cloud(&body.cloud)
+}
+
+impl Body {
+    fn grid(&self) -> Grid<'_> {
+        Grid { mesh: &self.mesh, material: &self.material }
+    }
+}
+
+impl Problem {
+    /// The problem on another mesh of the same body; none where grid and points are the same. `operators` makes the matrices.
+    ///
+    /// # Errors
+    /// A mesh that is not of the same body, or whose points cannot carry the degree.
+    pub(super) fn moved(
+        &self,
+        mesh: Mesh,
+        policy: Policy,
+        operators: impl FnOnce(&Scene, &Body) -> Result<Operators>,
+        clock: &mut Clock,
+    ) -> Result<Option<Moved>> {
+        let Self { scene, body: old, scheme, state, .. } = self;
+        let material = scene.material_of_cells(&mesh);
+        let (from, to) = (old.grid(), Grid { mesh: &mesh, material: &material });
+        let n = scheme.operators.nodes();
+        let (unknowns, scale) = (state.unpack(&scheme.operators.blocks, n), scale(scheme));
+        let basis = &scheme.operators.line.basis;
+        let field = Field { basis, components: state.components, u: &unknowns, scale: &scale };
+        let mut transfer = regrid::transfer(&from, &to, &field)?;
+        clock.lap("transfer");
+        let placed = self.place_points(&to, &transfer, policy)?;
+        clock.lap("points");
+        if mesh == old.mesh && placed.cloud == old.cloud {
+            return Ok(None);
+        }
+        let body = Body::as_placed(mesh, placed.cloud.clone(), placed.virtual_points.clone(), material);
+        let operators = operators(scene, &body)?;
+        clock.lap("matrices");
+        let after = scene.build_scheme(&body.mesh, operators, scheme.kernel);
+        regrid::curl_free(&after, state.components, &transfer.same, &mut transfer.u);
+        let new = State::pack(&after.operators.blocks, n, state.components, &transfer.u);
+        let mut new = State { time: state.time, step: state.step, ..new }.holding(state, &transfer.same, n);
+        let internal = self.internal_on(body.grid(), &after, &transfer.same, &placed)?;
+        after.set_internal(&mut new, &internal);
+        Ok(Some(Moved { body, scheme: after, state: new, transfer, placed }))
+    }
+
+    /// The problem on another mesh of the same body: fields by projection, histories at their points, time and step as they are.
+    ///
+    /// # Errors
+    /// A mesh that is not of the same body, whose groups are not those of the scene, or whose points cannot carry the degree.
+    pub fn regrid(&mut self, mesh: Mesh, policy: Policy) -> Result<()> {
+        self.scene.check_mesh(&mesh)?;
+        let moved = self.moved(mesh, policy, |scene, body| body.operators(scene), &mut Clock::new())?;
+        if let Some(Moved { body, scheme, state, .. }) = moved {
+            (self.body, self.scheme, self.state) = (body, scheme, state);
+            self.files = GridFiles::after(self.state.step);
+        }
+        Ok(())
+    }
+
+    /// Internal variables at the points (or nodes) of a new grid; empty where no law has any.
+    fn internal_on(&self, to: Grid, after: &Scheme, same: &[Option<usize>], placed: &Placed) -> Result<Vec<f64>> {
+        let (from, before) = (self.body.grid(), &self.scheme);
+        let count: Vec<usize> = before.laws.iter().map(|law| law.internal().len()).collect();
+        if count.iter().all(|count| *count == 0) {
+            return Ok(vec![]);
+        }
+        let (places, new, values) = (before.places(), after.places(), before.internal_of(&self.state));
+        if places == self.body.cloud && new == placed.cloud {
+            return Ok(histories(&from, &places, placed, &values, &count));
+        }
+        // The law is evaluated at the nodes, which are new points in cells that are new.
+        let stays = |(cell, twin): (usize, &Option<usize>)| twin.filter(|&twin| places.of(twin) == new.of(cell));
+        let same = &same.iter().enumerate().map(stays).collect::<Vec<_>>();
+        let (line, limits) = (&after.operators.line, &Limits::of_degree(after.operators.degree));
+        let (policy, fresh, virtual_points) = (Policy::Layout, &new, &[][..]);
+        let demand =
+            Demand { line, policy, fresh, samples: false, limits, virtual_points, histories: true, on_nodes: &[] };
+        Ok(histories(&from, &places, &place(&from, &places, &to, same, &demand)?, &values, &count))
+    }
+
+    /// Places the points on the new grid.
+    fn place_points(&self, to: &Grid, transfer: &Transfer, policy: Policy) -> Result<Placed> {
+        let Self { scene, body: old, scheme, .. } = self;
+        let fresh = match policy {
+            Policy::Keep => Cloud::default(),
+            Policy::Enrich | Policy::Layout => scene.build_cloud(to.mesh)?,
+        };
+        let samples = scene.scheme.method == Method::AderDgmpm;
+        let histories = scheme.laws.iter().any(|law| !law.internal().is_empty());
+        let (limits, virtual_points) = (&scene.limits, &old.virtual_points[..]);
+        let line = &scheme.operators.line;
+        let on_nodes = &scene.on_nodes(to.material);
+        let demand = Demand { line, policy, fresh: &fresh, samples, limits, virtual_points, histories, on_nodes };
+        place(&old.grid(), &old.cloud, to, &transfer.same, &demand)
+    }
+}
+
+/// The weights of the standard error: |F|^2 + |v|^2 / c_p^2 with the speed of the unstrained material.
+pub(super) fn scale(scheme: &Scheme) -> Vec<[f64; 8]> {
+    let of = |law: &crate::material::Law| {
+        let [c_p, _] = law.largest_speeds([1.0, 0.0, 0.0, 1.0], &law.virgin());
+        let p = (law.density() * c_p).powi(-2);
+        [1.0, 1.0, 1.0, 1.0, p, p, 0.0, 0.0]
+    };
+    scheme.laws.iter().map(of).collect()
+}

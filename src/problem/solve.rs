@@ -1,0 +1,91 @@
+//! The time loop from grid to grid.
+
+use super::{Problem, Regrids};
+use crate::error::{Error, Result};
+use crate::observe::Observer;
+use crate::run::{End, Folder, Report, Run, Stop};
+use std::sync::atomic::AtomicBool;
+
+/// Who looks on, and where files go.
+pub struct Solve<'a> {
+    /// The folder of the run; none: regrids write no files.
+    pub folder: Option<&'a Folder>,
+    /// Who looks on; may be empty.
+    pub observers: Vec<Box<dyn Observer + 'a>>,
+    /// Set from outside to stop after the step under way.
+    pub interrupt: &'a AtomicBool,
+}
+
+impl Problem {
+    /// Steps to the end without outputs, from grid to grid where the scene has `[[regrid]]`.
+    ///
+    /// # Errors
+    /// A run that lost stability ([`Error::Unstable`]); the state is then a good one of some steps before.
+    pub fn run(&mut self) -> Result<Report> {
+        let never = AtomicBool::new(false);
+        let mut report = Report::default();
+        let stop = self.solve(Solve { folder: None, observers: vec![], interrupt: &never }, &mut report).err();
+        let stop = stop.map(|stop| self.settle(stop));
+        report.finish(&self.scheme, &self.state);
+        stop.map_or(Ok(report), Err)
+    }
+
+    /// Steps to the end, from grid to grid. Where the run stops before, the state is the one before the step that failed.
+    ///
+    /// # Errors
+    /// See [`Stop`].
+    pub fn solve(&mut self, with: Solve, report: &mut Report) -> std::result::Result<(), Stop> {
+        let Solve { folder, mut observers, interrupt } = with;
+        let mut regrids = Regrids::new(self, folder)?;
+        loop {
+            let Self { body, scheme, settings, state, .. } = self;
+            let mut run = Run { mesh: &body.mesh, scheme, settings: *settings, observers, interrupt };
+            if run.advance_until(&mut regrids, state, report)? == End::Done {
+                return Ok(());
+            }
+            observers = run.observers;
+            let (step, time) = (self.state.step, self.state.time);
+            let named = |why| at_step(why, step, time);
+            let (words, totals) = regrids.rebuild(self).map_err(named)?;
+            observers.iter_mut().for_each(|observer| words.iter().for_each(|word| observer.notice(word)));
+            if let Some([before, after]) = totals {
+                report.regrid(&before, &after);
+                for observer in &mut observers {
+                    observer.regrid(&self.grid()).map_err(named)?;
+                }
+            }
+        }
+    }
+
+    /// Takes the last good state that a stop has kept; the stop as an error.
+    fn settle(&mut self, stop: Stop) -> Error {
+        match stop {
+            Stop::Output(error) => error,
+            Stop::Interrupted => Error::Interrupted(format!("at step {}", self.state.step)),
+            Stop::Unstable(lost) => {
+                let (what, time, step) = (self.describe(&lost.loss), lost.time, lost.step);
+                self.state = lost.kept;
+                unstable(what, time, step)
+            }
+            Stop::EnergyMade(made) => {
+                self.state = made.1;
+                unstable(made.0.to_string(), made.0.time, made.0.step)
+            }
+        }
+    }
+}
+
+fn unstable(what: String, time: f64, step: usize) -> Error {
+    let remedy = "the state is a good one of some steps before; a finer mesh or a smaller step may hold it".to_owned();
+    Error::Unstable { what, time, step, remedy }
+}
+
+/// An error that names the regrid.
+fn at_step(error: Error, step: usize, time: f64) -> Error {
+    match error {
+        Error::Input { what, place, remedy } => {
+            Error::Input { what: format!("regrid at step {step}, t = {time:.6e} s: {what}"), place, remedy }
+        }
+        other => other,
+    }
+}

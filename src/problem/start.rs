@@ -1,0 +1,91 @@
+//! The initial state of a scene: from its expressions, its exact solution, a snapshot or the fields of its cloud.
+
+use crate::error::Result;
+use crate::mesh::{self, Mesh};
+use crate::scene::{self, Expression, Scene};
+use crate::state::State;
+use crate::step::Scheme;
+use crate::tensor;
+
+impl Scene {
+    /// The initial state: F and p at the grid nodes from the scene's expressions, from its exact solution, or from the
+    /// fields of its cloud.
+    ///
+    /// # Errors
+    /// A value that is not finite, or J <= 0, with its place in the mesh.
+    pub fn initial_state(&self, mesh: &Mesh, scheme: &Scheme) -> Result<State> {
+        if let Some(path) = &self.initial.snapshot {
+            return self.state_of_snapshot(&self.resolve(path), scheme);
+        }
+        if self.initial.from_cloud {
+            return self.state_from_cloud(mesh, scheme);
+        }
+        let (basis, n) = (&scheme.operators.line.basis, scheme.operators.nodes());
+        let components = self.components();
+        let mut cells = vec![0.0; mesh.cells.len() * components * n];
+        let material = self.material_of_cells(mesh);
+        let exact = self.exact.as_ref().filter(|exact| exact.initial).and_then(|_| self.build_exact());
+        for (cell, values) in cells.chunks_mut(components * n).enumerate() {
+            let density = scheme.laws[material[cell]].density();
+            for a in 0..n {
+                let x = mesh::map::position(&mesh.corners(cell), basis.node_2d(a));
+                let (f, v) = match &exact {
+                    Some(exact) => (exact.deformation(x, self.start), exact.velocity(x, self.start)),
+                    None => {
+                        self.check_initial_expressions(x, mesh.number(cell))?;
+                        self.initial.at(x)
+                    }
+                };
+                self.check_initial(f, v, x, mesh.number(cell))?;
+                let u = [f[0], f[1], f[2], f[3], density * v[0], density * v[1]];
+                u.into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
+            }
+        }
+        let mut state = State { time: self.start, ..State::pack(&scheme.operators.blocks, n, components, &cells) };
+        scheme.set_internal(&mut state, &scheme.virgin_internal());
+        Ok(state)
+    }
+
+    /// Whether the expressions of the initial fields are finite at X.
+    fn check_initial_expressions(&self, x: [f64; 2], cell: u64) -> Result<()> {
+        let velocity = ["v1", "v2"].iter().zip(&self.initial.velocity);
+        let deformation = ["F11", "F12", "F21", "F22"].iter().zip(&self.initial.deformation);
+        let keyed = velocity.enumerate().map(|entry| ("velocity", entry));
+        for (key, (k, (name, expression))) in keyed.chain(deformation.enumerate().map(|entry| ("deformation", entry))) {
+            let value = expression.eval(x, 0.0);
+            if !value.is_finite() {
+                let source = expression.source();
+                let what = format!(
+                    "the initial {key} {name} = `{source}` is {value} at X = ({}, {}) in cell {cell}",
+                    x[0], x[1]
+                );
+                let remedy = "give an expression that is finite all over the body";
+                return Err(self.error(&format!("initial.{key}.{k}"), what, remedy));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn check_initial(&self, f: [f64; 4], v: [f64; 2], x: [f64; 2], cell: u64) -> Result<()> {
+        // Called for every node: no text is made before there is an error.
+        let at = || format!("at X = ({}, {}) in cell {cell}", x[0], x[1]);
+        if v.iter().any(|v| !v.is_finite()) {
+            let what = format!("the initial velocity {} is ({}, {})", at(), v[0], v[1]);
+            return Err(self.error("initial.velocity", what, "give expressions that are finite all over the body"));
+        }
+        let j = tensor::det(f);
+        if f.iter().any(|f| !f.is_finite()) || j <= 0.0 {
+            let what = format!("the initial deformation gradient {} has J = {j}", at());
+            return Err(self.error("initial.deformation", what, "give expressions with F11 F22 - F12 F21 > 0"));
+        }
+        Ok(())
+    }
+}
+
+impl scene::Initial {
+    /// F and v at X.
+    fn at(&self, x: [f64; 2]) -> ([f64; 4], [f64; 2]) {
+        let value = |e: &Expression| e.eval(x, 0.0);
+        (self.deformation.each_ref().map(value), self.velocity.each_ref().map(value))
+    }
+}

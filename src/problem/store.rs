@@ -1,0 +1,79 @@
+//! Operators from stored matrices where these belong to the same input, else built and stored.
+
+use super::body::Body;
+use crate::error::Result;
+use crate::io::operators_file;
+use crate::operators::{Blocks, Line, Operators, Stored};
+use crate::scene::Scene;
+use std::collections::VecDeque;
+use std::path::Path;
+
+/// Where stored matrices may be found, and where new ones go.
+#[derive(Debug, Clone, Copy)]
+pub struct Store<'a> {
+    /// Files to look into, in this order.
+    pub look: &'a [&'a Path],
+    /// The file that new ones are written to.
+    pub write: &'a Path,
+}
+
+impl Store<'_> {
+    /// The operators, and in words where their matrices come from.
+    ///
+    /// # Errors
+    /// A cell whose points cannot carry the degree; a file that cannot be written.
+    pub fn operators(&self, scene: &Scene, body: &Body) -> Result<(Operators, String)> {
+        let places = body.places(scene);
+        let needs = scene.needs(&places);
+        let links = scene.links(&body.mesh)?;
+        let (line, blocks) = (Line::new(needs.degree), Blocks::new(&body.material, &links));
+        let key = operators_file::key(&body.mesh, &scene.periodic_groups(&body.mesh), &body.material, &needs);
+        let mut notes = Vec::new();
+        for path in self.look.iter().filter(|path| path.exists()) {
+            // A damaged file is built again: it only holds what follows from the input.
+            match operators_file::read(path, &key, &blocks, &needs) {
+                Ok(Some(stored)) => {
+                    let from = format!("matrices reused from {}", path.display());
+                    return Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), from));
+                }
+                Ok(None) => notes.push(format!("{} belongs to other mesh, cloud, degree or method", path.display())),
+                Err(_) => notes.push(format!("{} is damaged", path.display())),
+            }
+        }
+        let stored = Stored::build(&body.mesh, &blocks, &line, &needs)?;
+        operators_file::write(self.write, &key, &stored, &body.certificates)?;
+        notes.push(format!("matrices written to {}", self.write.display()));
+        Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), notes.join("; ")))
+    }
+}
+
+/// Grids whose matrices are kept in memory, so that grids that alternate are built once.
+const KEPT: usize = 4;
+
+/// Matrices of the last grids of a run, by the key of their input, the latest last.
+#[derive(Default)]
+pub struct Recent(VecDeque<(String, Stored)>);
+
+impl Recent {
+    /// The operators of a body, their matrices from memory where they have been built before.
+    ///
+    /// # Errors
+    /// A cell whose points cannot carry the degree; a boundary that is not wholly tagged.
+    pub fn operators(&mut self, scene: &Scene, body: &Body) -> Result<Operators> {
+        let links = scene.links(&body.mesh)?;
+        let places = body.places(scene);
+        let needs = scene.needs(&places);
+        let (line, blocks) = (Line::new(needs.degree), Blocks::new(&body.material, &links));
+        let key = operators_file::key(&body.mesh, &scene.periodic_groups(&body.mesh), &body.material, &needs);
+        let known = self.0.iter().position(|(known, _)| *known == key).and_then(|k| self.0.remove(k));
+        let stored = match known {
+            Some((_, stored)) => stored,
+            None => Stored::build(&body.mesh, &blocks, &line, &needs)?,
+        };
+        self.0.push_back((key, stored.clone()));
+        if self.0.len() > KEPT {
+            self.0.pop_front();
+        }
+        Ok(Operators::assemble(&body.mesh, line, blocks, &needs, stored))
+    }
+}

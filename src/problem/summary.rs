@@ -1,0 +1,59 @@
+//! What a run came to: `summary.json`.
+
+use super::Problem;
+use crate::error::Result;
+use crate::exact::{Errors, Exact, errors};
+use crate::run::{Folder, Report, norms};
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+/// A run at its end.
+pub struct Outcome<'a> {
+    /// The problem with the last good state.
+    pub problem: &'a Problem,
+    /// Figures of the run.
+    pub report: &'a Report,
+    /// Errors, where the scene names an exact solution.
+    pub errors: Option<Errors>,
+}
+
+impl<'a> Outcome<'a> {
+    /// With the errors against the exact solution of the scene.
+    pub fn new(problem: &'a Problem, report: &'a Report) -> Self {
+        let Problem { scene, body, scheme, state, .. } = problem;
+        let of = |exact: Arc<dyn Exact>| errors(exact.as_ref(), &body.mesh, scheme, state, &body.material);
+        Self { problem, report, errors: scene.build_exact().map(of) }
+    }
+
+    /// Writes `summary.json`. `status`: done, unstable, interrupted or failed; `loss`: what is known of a loss of stability.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write(&self, folder: &Folder, status: &str, loss: Option<Value>) -> Result<()> {
+        let Problem { scene, body, scheme, state, .. } = self.problem;
+        let mut all = self.report.json(scheme, state);
+        if let Some(errors) = &self.errors {
+            all.insert("errors".to_owned(), error_json(errors));
+        }
+        all.insert("title".to_owned(), json!(scene.title));
+        all.insert("method".to_owned(), json!(scene.scheme.method.name()));
+        all.insert("degree".to_owned(), json!(scene.scheme.degree));
+        all.insert("time_degree".to_owned(), json!(scene.scheme.time_degree));
+        all.insert("points".to_owned(), json!(body.cloud.len()));
+        all.insert("norms".to_owned(), json!(norms(scheme, state, &body.material)));
+        all.insert("kernel".to_owned(), json!(format!("{:?}", scheme.kernel).to_lowercase()));
+        all.insert("status".to_owned(), json!(status));
+        if let Some(loss) = loss {
+            all.insert("loss".to_owned(), loss);
+        }
+        let text = format!("{:#}\n", Value::Object(all));
+        crate::io::pending::write_text(&folder.summary(), &text)
+    }
+}
+
+fn error_json(errors: &Errors) -> Value {
+    let mut all: serde_json::Map<String, Value> =
+        errors.fields().iter().map(|(name, norms)| ((*name).to_owned(), json!(norms))).collect();
+    all.insert("standard".to_owned(), json!(errors.standard));
+    Value::Object(all)
+}
