@@ -187,6 +187,28 @@ impl Material for J2 {
         L::splat(self.yield_stress) * (internal[PLASTIC_STRAIN] + self.step(f, internal).flow)
     }
 
+    /// Cp^-1 <- (J_to/J_from)^(2/3) F_to^-1 b_e F_to^-T: b_e without its volume, and the yield function, stay; that of material
+    /// which has never yielded is left as it is.
+    #[inline(always)]
+    fn move_history<L: Lane>(&self, from: [L; 4], to: [L; 4], internal: &mut [L]) {
+        let (c11, c22, c12, c33) = (internal[0], internal[1], internal[2], internal[3]);
+        let product = tensor::times_transposed(from, [c11, c12, c12, c22]);
+        let b = tensor::times_transposed(product, from);
+        let inverse = L::splat(1.0) / tensor::det(to);
+        let ratio = tensor::det(from) * inverse;
+        // F^-1 = (cof F)^T / J.
+        let [g11, g12, g21, g22] = tensor::cofactor(to);
+        let back = [g11, g21, g12, g22];
+        let new = tensor::times_transposed(tensor::times_transposed(back, b), back);
+        let volume = ratio.inverse_cube_root() * ratio.inverse_cube_root();
+        let scale = volume * inverse * inverse;
+        let new = [scale * new[0], scale * new[3], scale * new[1], volume * c33];
+        let strain = internal[PLASTIC_STRAIN];
+        for (old, new) in internal.iter_mut().zip(new) {
+            *old = strain.where_positive(new, *old);
+        }
+    }
+
     /// Elastic, in the state that virgin material has after one step to F.
     ///
     /// With n = F^-T N = g/J, g = (cof F) N, and the deviator D of 2e in the plane (eigenvalues +-w):

@@ -59,6 +59,12 @@ pub trait Material: Copy {
         L::zero()
     }
 
+    /// The history of a point where F is `from`, for a place where F is `to` and the elastic strain is to be the same but for its
+    /// volume. (A history belongs to its point: with F of another place it would make elastic strain of the difference.)
+    /// Nothing to do for laws without one.
+    #[inline(always)]
+    fn move_history<L: Lane>(&self, _from: [L; 4], _to: [L; 4], _internal: &mut [L]) {}
+
     /// Acoustic tensor B_ij = N_a (dP_ia/dF_jb) N_b, [B11, B12, B22] in Pa, elastic. Faces have no internal variables: a law
     /// with memory takes those of virgin material that went to F in one step.
     fn acoustic<L: Lane>(&self, f: [L; 4], n: [L; 2]) -> [L; 3];
@@ -173,12 +179,25 @@ impl Law {
         with_law!(self, law => law.largest_squares(f, internal)).map(f64::sqrt)
     }
 
+    /// The history of a point for another place, see [`Material::move_history`].
+    pub fn move_history(&self, from: [f64; 4], to: [f64; 4], internal: &mut [f64]) {
+        with_law!(self, law => law.move_history(from, to, internal));
+    }
+
     /// Names of the internal variables.
     pub fn internal(&self) -> &'static [&'static str] {
         fn names<M: Material>(_: &M) -> &'static [&'static str] {
             M::INTERNAL
         }
         with_law!(self, law => names(law))
+    }
+
+    /// Whether P(R F) = R P(F) for every rotation R, see [`Material::GEOMETRIC`].
+    pub fn is_objective(&self) -> bool {
+        fn objective<M: Material>(_: &M) -> bool {
+            M::GEOMETRIC
+        }
+        with_law!(self, law => objective(law))
     }
 
     /// Internal variables of virgin material.

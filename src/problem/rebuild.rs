@@ -186,7 +186,7 @@ impl Problem {
         regrid::curl_free(&after, state.components, &transfer.same, &mut transfer.u);
         let new = State::pack(&after.operators.blocks, n, state.components, &transfer.u);
         let mut new = State { time: state.time, step: state.step, ..new }.holding(state, &transfer.same, n);
-        let internal = self.internal_on(body.grid(), &after, &transfer.same, &placed)?;
+        let internal = self.internal_on(body.grid(), (&after, &new), &transfer.same, &placed)?;
         after.set_internal(&mut new, &internal);
         Ok(Some(Moved { body, scheme: after, state: new, transfer, placed }))
     }
@@ -206,24 +206,49 @@ impl Problem {
     }
 
     /// Internal variables at the points (or nodes) of a new grid; empty where no law has any.
-    fn internal_on(&self, to: Grid, after: &Scheme, same: &[Option<usize>], placed: &Placed) -> Result<Vec<f64>> {
+    fn internal_on(
+        &self,
+        to: Grid,
+        (after, new): (&Scheme, &State),
+        same: &[Option<usize>],
+        placed: &Placed,
+    ) -> Result<Vec<f64>> {
         let (from, before) = (self.body.grid(), &self.scheme);
-        let count: Vec<usize> = before.laws.iter().map(|law| law.internal().len()).collect();
-        if count.iter().all(|count| *count == 0) {
+        if before.histories.is_empty() {
             return Ok(vec![]);
         }
-        let (places, new, values) = (before.places(), after.places(), before.internal_of(&self.state));
-        if places == self.body.cloud && new == placed.cloud {
-            return Ok(histories(&from, &places, placed, &values, &count));
-        }
+        let count: Vec<usize> = before.laws.iter().map(|law| law.internal().len()).collect();
+        let (old_places, places) = (before.places(), after.places());
         // The law is evaluated at the nodes, which are new points in cells that are new.
-        let stays = |(cell, twin): (usize, &Option<usize>)| twin.filter(|&twin| places.of(twin) == new.of(cell));
+        let stays = |(cell, twin): (usize, &Option<usize>)| twin.filter(|&twin| old_places.of(twin) == places.of(cell));
         let same = &same.iter().enumerate().map(stays).collect::<Vec<_>>();
         let (line, limits) = (&after.operators.line, &Limits::of_degree(after.operators.degree));
-        let (policy, fresh, virtual_points) = (Policy::Layout, &new, &[][..]);
-        let demand =
-            Demand { line, policy, fresh, samples: false, limits, virtual_points, histories: true, on_nodes: &[] };
-        Ok(histories(&from, &places, &place(&from, &places, &to, same, &demand)?, &values, &count))
+        let own = old_places == self.body.cloud && places == placed.cloud;
+        let nodes = match own {
+            true => None,
+            false => {
+                let (policy, fresh, histories) = (Policy::Layout, &places, true);
+                let (virtual_points, on_nodes) = (&[][..], &[][..]);
+                let demand =
+                    Demand { line, policy, fresh, samples: false, limits, virtual_points, histories, on_nodes };
+                Some(place(&from, &old_places, &to, same, &demand)?)
+            }
+        };
+        let placed = nodes.as_ref().unwrap_or(placed);
+        let mut values = histories(&from, &old_places, placed, &before.internal_of(&self.state), &count);
+        let (f_old, f_new) = (deformation(before, &self.state, &old_places), deformation(after, new, &places));
+        let (mut rest, mut p) = (&mut values[..], 0);
+        for (cell, &material) in to.material.iter().enumerate() {
+            for _ in places.of(cell) {
+                let (own, more) = rest.split_at_mut(count[material]);
+                rest = more;
+                if same[cell].is_none() {
+                    after.laws[material].move_history(f_old[placed.source[p]], f_new[p], own);
+                }
+                p += 1;
+            }
+        }
+        Ok(values)
     }
 
     /// Places the points on the new grid.
@@ -241,6 +266,20 @@ impl Problem {
         let demand = Demand { line, policy, fresh: &fresh, samples, limits, virtual_points, histories, on_nodes };
         place(&old.grid(), &old.cloud, to, &transfer.same, &demand)
     }
+}
+
+/// F at points, in the order of the cloud.
+fn deformation(scheme: &Scheme, state: &State, places: &Cloud) -> Vec<[f64; 4]> {
+    let (basis, n) = (&scheme.operators.line.basis, scheme.operators.nodes());
+    let cells = state.unpack(&scheme.operators.blocks, n);
+    let at = |(cell, u): (usize, &[f64])| {
+        let of_point = |xi: &[f64; 2]| {
+            let phi = basis.values_2d(*xi);
+            [0, 1, 2, 3].map(|k| phi.iter().zip(&u[k * n..]).map(|(phi, u)| phi * u).sum())
+        };
+        places.of(cell).iter().map(of_point).collect::<Vec<_>>()
+    };
+    cells.chunks_exact(state.components * n).enumerate().flat_map(at).collect()
 }
 
 /// The weights of the standard error: |F|^2 + |v|^2 / c_p^2 with the speed of the unstrained material.

@@ -121,9 +121,9 @@ impl Watch {
         }
     }
 
-    /// Another grid: what its energy differs by is booked apart.
+    /// Another grid: what it takes of the energy is booked apart, and what it adds is made out of nothing.
     pub fn regrid(&mut self, before: f64, after: f64) {
-        self.regrids += after - before;
+        self.regrids += (after - before).min(0.0);
     }
 }
 

@@ -156,15 +156,22 @@ impl Block<'_> {
                 curl::project::<L, M>(curl_free, self.block, theta, masses, arrays, next);
             }
             Relax::Rotation => {
-                if speed.prestress.0.iter().all(|c| *c == 0.0) {
+                let law = &self.scheme.laws[operators.blocks.material[self.block]];
+                if !law.is_objective() {
                     return;
                 }
                 let prestress = L::load(&speed.prestress);
+                let slowest = if law.internal().is_empty() { curl::SLOWEST } else { 0.0 };
+                if slowest == 0.0 && speed.prestress.0.iter().all(|c| *c == 0.0) {
+                    return;
+                }
+                let turn = (L::splat(curl::ROTATION) * prestress).max(L::splat(slowest) * c).min(c);
                 let theta = [
-                    curl::relaxation((L::splat(curl::ROTATION) * prestress).min(c) * factor),
+                    curl::relaxation(turn * factor),
                     curl::relaxation((L::splat(curl::DEVIATOR) * prestress).min(c) * factor),
                 ];
-                curl::rotate::<L, M>(curl_free, self.block, theta, masses, arrays, &mut nodes.stage, next);
+                let rotation = curl::Rotation { curl_free, block: self.block, law, gradients: &mut nodes.stage };
+                rotation.run::<L, M>(theta, masses, arrays, next);
             }
         }
     }

@@ -51,6 +51,25 @@ fn equivalent(f: [f64; 4], p: [f64; 4], p33: f64) -> f64 {
 
 proptest! {
     #[test]
+    fn a_moved_history_keeps_the_elastic_strain_but_for_its_volume(way in way(), to in deformation()) {
+        let law = steel(4e8, 1e10);
+        let from = *way.last().unwrap();
+        let before = history(&law, &way);
+        let mut after = before;
+        law.move_history(from, to, &mut after);
+        let [one, two] = [law.response(from, &before), law.response(to, &after)];
+        // Nothing yields: the deviator of the elastic strain is the same.
+        prop_assert_eq!(one.internal, before);
+        prop_assert!((two.internal[PLASTIC_STRAIN] - before[PLASTIC_STRAIN]).abs() < 1e-12);
+        if before[PLASTIC_STRAIN] > 0.0 {
+            let size = |f, r: &super::super::Response<f64>| equivalent(f, r.piola, r.piola33);
+            // Roundings of numbers of the size of the moduli.
+            prop_assert!((size(from, &one) - size(to, &two)).abs() < 1e-11 * SCALE);
+            prop_assert!((det(&after) - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
     fn stress_stays_on_the_yield_surface_and_plastic_strain_never_falls(way in way(), to in deformation()) {
         let law = steel(4e8, 1e10);
         let before = history(&law, &way);
