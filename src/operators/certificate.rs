@@ -13,7 +13,7 @@ names! {
         Lattice = "lattice",
         /// Any other cloud: dense matrices.
         Dense = "dense",
-        /// Points that cannot carry Q_N: virtual ones stand on the Gauss nodes in their place, see [`super::carry`].
+        /// Points that cannot carry Q_N: virtual ones stand on the Gauss nodes in their place, see [`carry`](mod@super::carry).
         Deficient = "deficient",
         /// The Gauss nodes themselves: methods without points, and laws with memory.
         Nodes = "nodes",
