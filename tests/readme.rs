@@ -58,3 +58,42 @@ fn the_scene_is_accepted() {
     let [scene] = blocks("A scene, key by key", "toml")[..] else { panic!("one scene") };
     Scene::parse(scene, Path::new("meshes/readme.toml"), &[]).unwrap();
 }
+
+/// `tools/program.sh` finds the program wherever cargo puts it, and every tool asks it.
+#[cfg(unix)]
+#[test]
+fn tools_find_the_program() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let tools = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools");
+    let place = tempfile::tempdir().unwrap();
+    let place = place.path().canonicalize().unwrap();
+    let ask = |variable: &str, value: &Path| {
+        let mut command = Command::new(tools.join("program.sh"));
+        for name in ["DGMPM", "CARGO_TARGET_DIR", "CARGO_BUILD_TARGET_DIR"] {
+            command.env_remove(name);
+        }
+        let answer = command.env(variable, value).output().unwrap();
+        answer.status.success().then(|| String::from_utf8(answer.stdout).unwrap().trim_end().to_owned())
+    };
+    assert_eq!(ask("CARGO_TARGET_DIR", &place), None, "no program there yet");
+
+    let program = place.join("release/dgmpm");
+    std::fs::create_dir(place.join("release")).unwrap();
+    std::fs::write(&program, "").unwrap();
+    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    // The second is what `build.target-dir` in a configuration of cargo sets.
+    for variable in ["CARGO_TARGET_DIR", "CARGO_BUILD_TARGET_DIR"] {
+        assert_eq!(ask(variable, &place).as_deref(), program.to_str(), "{variable}");
+    }
+    assert_eq!(ask("DGMPM", Path::new("/any/dgmpm")).as_deref(), Some("/any/dgmpm"));
+
+    for entry in std::fs::read_dir(&tools).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "sh") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let asks = text.contains("dgmpm=$(tools/program.sh)");
+            assert!(asks || !text.contains("\"$dgmpm\""), "{} does not ask for the program", path.display());
+        }
+    }
+}

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-dgmpm=${DGMPM:-target/release/dgmpm}
+dgmpm=$(tools/program.sh)
 start=$SECONDS
 "$dgmpm" study meshes/simple_wave.toml --refine 0.5,1,2 --out runs/study/simple_wave --force
 "$dgmpm" study meshes/smooth_box.toml --refine 0.25,0.5,1,1.5 --out runs/study/smooth_box --force
