@@ -167,7 +167,7 @@ mod tests {
         for angle in [0.0, 30.0, 45.0, 77.0] {
             let spacing = mean_spacing(&mesh, &all(&mesh), 3);
             let cloud = Pattern::Rotated { angle, spacing }.seed(&mesh, &all(&mesh));
-            // The area over that of a point, but for an edge of half a spacing: 10 / (1/6) / 2 points.
+            // The area of the body over the area of a point, without a strip of half a spacing at the edge: 10 / (1/6) / 2 points.
             assert!((cloud.len() as f64 - 216.0).abs() < 30.0, "{}", cloud.len());
             // Positions are held to 2^-41 of a cell of .5.
             assert!(gaps(&positions(&mesh, &cloud)).iter().all(|gap| (gap - spacing).abs() < 1e-12));

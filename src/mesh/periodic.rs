@@ -14,7 +14,7 @@ const MATCH: f64 = 1e-6;
 /// The translation takes the centre of the first group to that of the second. Cells may be their own neighbours.
 ///
 /// # Errors
-/// Those of [`links`]; two groups with different numbers of edges; an edge without a match, with its position.
+/// The errors of [`links`]; two groups with different numbers of edges; an edge without a match, with its position.
 pub fn periodic_links(mesh: &Mesh, pairs: &[[usize; 2]]) -> Result<Vec<[Link; 4]>, Error> {
     let mut links = links(mesh)?;
     for pair in pairs {

@@ -46,7 +46,7 @@ pub struct Certificate {
 /// Certificates of all cells, in the order of the mesh, without dt.
 ///
 /// # Errors
-/// Those of the fit ([`MovingLeastSquares::new`]).
+/// The errors of the fit ([`MovingLeastSquares::new`]).
 pub fn certify(mesh: &Mesh, line: &Line, sampling: Sampling) -> Result<Vec<Certificate>, Error> {
     let nodes = line.nodes();
     let (class, examples) = sampling.classes(&nodes, mesh.cells.len());
@@ -64,7 +64,7 @@ pub fn certify(mesh: &Mesh, line: &Line, sampling: Sampling) -> Result<Vec<Certi
 /// The certificate of a cell with these points, without its shape (h = 0, dt = NaN).
 ///
 /// # Errors
-/// Those of the fit ([`MovingLeastSquares::new`]).
+/// The errors of the fit ([`MovingLeastSquares::new`]).
 pub fn of_points(line: &Line, xi: &[[f64; 2]]) -> Result<Certificate, Error> {
     let fit = MovingLeastSquares::new(line.m - 1, xi)?;
     let along = &line.basis.nodes;

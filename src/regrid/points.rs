@@ -54,7 +54,7 @@ pub struct Demand<'a> {
     pub samples: bool,
     /// The limits for the points of a cell. Beyond them virtual points on the Gauss nodes replace the points.
     pub limits: &'a Limits,
-    /// Which of the old points are virtual, on Gauss nodes; empty: none.
+    /// Which of the old points are virtual, on Gauss nodes. An empty list: none.
     pub virtual_points: &'a [bool],
     /// Whether a law has internal variables. Then an old point is found for each new point.
     pub histories: bool,
