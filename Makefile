@@ -1,15 +1,15 @@
 # make demo     the paper's impact, from the mesh to the figures
 # make test     every test
-# make study    what accuracy costs in time: tables and plots of README and docs
+# make study    what accuracy costs in time: tables and plots of docs/cost.md
 # make bench    the speed of the step on this machine: tables and roofline of docs/performance.md
 .PHONY: help setup build demo test study bench clean
 
 help:
 	@echo "make demo    install what is missing, build, run the paper's impact with all methods, draw its figures"
 	@echo "make test    install what is missing, run every test"
-	@echo "make study   measure what accuracy costs in time: the tables and plots of README.md and docs/cost.md, anew"
+	@echo "make study   measure what accuracy costs in time: the tables and plots of docs/cost.md, again"
 	@echo "make bench   measure the speed (ten minutes): runs/bench/, docs/performance.md, docs/img/roofline.svg"
-	@echo "make build   the program: target/release/dgmpm"
+	@echo "make build   the program; its last line says where cargo has put it"
 	@echo "make setup   only install what is missing (Debian packages, .venv)"
 	@echo "make clean   remove build results and runs; .venv stays"
 
@@ -18,6 +18,7 @@ setup:
 
 build: setup
 	cargo build --release
+	@echo "the program: $$(DGMPM= tools/program.sh)"
 
 demo: build
 	@tools/demo.sh

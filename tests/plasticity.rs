@@ -372,7 +372,7 @@ fn energy_goes_into_plastic_flow_and_jumps_and_nowhere_else() {
             "{method}: remainder {remainder:.2e} of the energy at the start, total {:.4}",
             total.last().unwrap() / total[0]
         );
-        // What time integration leaves, see the README: at a shock ADER's is large, RK's is not.
+        // What time integration leaves, see docs/method.md: at a shock ADER's is large, RK's is not.
         assert!(remainder.abs() < largest, "{method}: {remainder:e}");
         assert_eq!(outcome.number("plastic_dissipation"), end);
     }

@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-dgmpm=${DGMPM:-target/release/dgmpm}
+dgmpm=$(tools/program.sh)
 out=runs/bench
 [ "${1:-}" = --only-docs ] || "$dgmpm" bench --all "$out" --mesh meshes/square_unstructured.msh
 [ "${1:-}" != --keep-docs ] || exit 0

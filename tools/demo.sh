@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-dgmpm=${DGMPM:-target/release/dgmpm}
+dgmpm=$(tools/program.sh)
 scene=meshes/square_impact.toml
 start=$SECONDS
 

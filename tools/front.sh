@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-dgmpm=${DGMPM:-target/release/dgmpm}
+dgmpm=$(tools/program.sh)
 python=${DGMPM_PYTHON:-.venv/bin/python}
 out=${OUT:-runs}
 scene=meshes/square_front.toml

@@ -1,4 +1,4 @@
-"""Puts the tables of `make study` into README.md and docs/cost.md, and its plots into docs/img."""
+"""Puts the tables of `make study` into docs/cost.md, and its plots into docs/img."""
 
 import json
 import shutil
@@ -47,14 +47,6 @@ def main(folder: Path) -> None:
     made = f"Made by `make study`, {date.today().isoformat()}."
     whole = "\n\n".join(section(folder, name, "img") for name in PROBLEMS)
     replace(ROOT / "docs/cost.md", f"{made}\n\n{whole}")
-    table = (folder / "smooth_box" / "table.md").read_text().strip()
-    title = json.loads((folder / "smooth_box" / "study.json").read_text())["title"]
-    short = (
-        f"*{title}; one thread.* {made} The simple wave, an impact and the answers in words are in "
-        f"[docs/cost.md](docs/cost.md).\n\n{table}\n\n"
-        "![error over CPU seconds](docs/img/study_smooth_box.svg)"
-    )
-    replace(ROOT / "README.md", short)
 
 
 if __name__ == "__main__":

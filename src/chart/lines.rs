@@ -6,10 +6,10 @@ use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// How the points of a line look.
+/// The marks at the points of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marker {
-    /// None: a bare line, in grey.
+    /// No marks: a bare line, in grey.
     Bare,
     /// Circles: RK-DGFEM.
     Circle,
@@ -30,14 +30,14 @@ pub struct Line {
     pub colour: usize,
     /// Its points.
     pub marker: Marker,
-    /// Where they are.
+    /// The positions of the points.
     pub points: Vec<(f64, f64)>,
 }
 
-/// How an axis runs.
+/// The scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
-    /// In logarithms, over whole decades.
+    /// Logarithmic, over whole decades.
     Log,
     /// Linear.
     Linear,
@@ -46,13 +46,13 @@ pub enum Scale {
 /// A picture of lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    /// Above it.
+    /// The title above the picture.
     pub title: String,
-    /// Below the abscissa.
+    /// The label below the abscissa.
     pub x: String,
-    /// Beside the ordinate.
+    /// The label beside the ordinate.
     pub y: String,
-    /// How abscissa and ordinate run.
+    /// The scales of abscissa and ordinate.
     pub scales: [Scale; 2],
     /// The lines.
     pub lines: Vec<Line>,
@@ -136,7 +136,7 @@ impl Chart {
     }
 }
 
-/// A range around numbers, with a margin of a twentieth, that is not empty.
+/// A range around numbers, with a margin of a twentieth. It is never empty.
 fn around(values: &mut dyn Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     let margin = if high > low { 0.05 * (high - low) } else { 0.05 * high.abs().max(1e-12) };

@@ -1,4 +1,4 @@
-//! Pictures: what all of them share, and charts of lines.
+//! Pictures: the common parts, and charts of lines.
 
 mod lines;
 
@@ -11,11 +11,11 @@ use plotters::prelude::*;
 use std::path::Path;
 use std::sync::Once;
 
-/// Pixels.
+/// Width and height of a picture, pixels.
 pub const SIZE: (u32, u32) = (900, 620);
 /// The font of all text.
 pub const FONT: &str = "sans-serif";
-/// By degree from 0; told apart by the colour-blind, too (Okabe, Ito).
+/// Colours by degree, from 0. Colour-blind readers can tell them apart (Okabe, Ito).
 pub const COLOURS: [RGBColor; 7] = [
     RGBColor(120, 120, 120),
     RGBColor(230, 159, 0),
@@ -31,14 +31,14 @@ pub trait Picture {
     /// Draws it on an area of [`SIZE`].
     ///
     /// # Errors
-    /// Where there is nothing to draw, or the backend cannot.
+    /// There is nothing to draw, or the backend fails.
     fn draw<B: DrawingBackend>(&self, area: DrawingArea<B, Shift>) -> std::result::Result<(), String>;
 }
 
-/// Draws a picture into `path`, whose ending (`svg`, `png`) says how.
+/// Draws a picture into `path`. The ending of the path (`svg`, `png`) gives the format.
 ///
 /// # Errors
-/// Where there is nothing to draw, or the file cannot be written.
+/// There is nothing to draw, or the file cannot be written.
 pub fn save<P: Picture>(picture: &P, path: &Path) -> Result<()> {
     fonts();
     let pending = Pending::new(path)?;
@@ -48,7 +48,7 @@ pub fn save<P: Picture>(picture: &P, path: &Path) -> Result<()> {
         picture.draw(SVGBackend::with_string(&mut text, SIZE).into_drawing_area()).map_err(failed)?;
         std::fs::write(pending.path(), text).map_err(|why| Error::output(path, why))?;
     } else {
-        // The bitmap backend tells the format from the ending, which a pending file has not.
+        // The bitmap backend takes the format from the ending of the name, and a pending file has no such ending.
         let mut pixels = vec![255; 3 * SIZE.0 as usize * SIZE.1 as usize];
         let area = BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area();
         picture.draw(area).map_err(failed)?;
@@ -58,11 +58,11 @@ pub fn save<P: Picture>(picture: &P, path: &Path) -> Result<()> {
     pending.commit()
 }
 
-/// The font comes with the program: a machine without a desktop has none.
+/// The font comes with the program, because a machine without a desktop has no font.
 fn fonts() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
-        // The one possible fault, a file that is no font, is excluded by the test that draws with it.
+        // The only possible error is a file that is no font. The test that draws with this font excludes it.
         let _ = plotters::style::register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
     });
 }

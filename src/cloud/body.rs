@@ -1,4 +1,4 @@
-//! Seeding of a whole body, without regard to its cells: some have many points, some at its edge have none.
+//! Seeding of a whole body that ignores the cells: some cells get many points, some cells at the edge get none.
 
 use std::collections::HashMap;
 
@@ -8,12 +8,12 @@ use super::seed::{stream, uniform};
 use super::{Cloud, Locator, locate};
 use crate::mesh::{Mesh, map};
 
-/// Where the points of a body lie.
+/// The arrangement of the points in a body.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Pattern {
-    /// Random points, none nearer to another than `spacing`, as dense as they come: candidates are taken in a random
-    /// order, each that has room.
+    /// Random points that are at least `spacing` apart, as dense as possible: candidates come in a random order, and each
+    /// candidate with enough room is taken.
     PoissonDisk {
         /// Seed of the generator.
         seed: u64,
@@ -37,7 +37,7 @@ impl Pattern {
     /// Least distance of a Poisson disk pattern over the spacing of a lattice with about as many points.
     pub const DISK: f64 = 0.8;
 
-    /// The points in those cells that are `member`s. All others have none.
+    /// The points in the cells that are `member`s. All other cells have no points.
     pub fn seed(self, mesh: &Mesh, member: &[bool]) -> Cloud {
         match self {
             Pattern::PoissonDisk { seed, spacing } => poisson_disk(mesh, member, seed, spacing),
@@ -72,7 +72,7 @@ fn rotated(mesh: &Mesh, member: &[bool], angle: f64, spacing: f64) -> Cloud {
     locate::sorted(mesh.cells.len(), found.into_iter().map(|found| found.filter(|(cell, _)| member[*cell]))).0
 }
 
-/// A point that may be taken.
+/// A candidate: a point that is taken if it has enough room.
 struct Candidate {
     priority: u64,
     cell: usize,
@@ -93,7 +93,7 @@ fn poisson_disk(mesh: &Mesh, member: &[bool], seed: u64, spacing: f64) -> Cloud 
     for candidate in candidates {
         let x = map::position(&mesh.corners(candidate.cell), candidate.xi);
         let [i, j] = square(x);
-        // The square of its own first: most candidates come too late there.
+        // Its own square first: for most candidates a point is already there.
         let shifts = [0, -1, 1, -2, 2];
         let around = shifts.into_iter().flat_map(|di| shifts.map(|dj| [i + di, j + dj]));
         let near = |other: &[f64; 2]| (x[0] - other[0]).hypot(x[1] - other[1]) < spacing;
@@ -167,7 +167,7 @@ mod tests {
         for angle in [0.0, 30.0, 45.0, 77.0] {
             let spacing = mean_spacing(&mesh, &all(&mesh), 3);
             let cloud = Pattern::Rotated { angle, spacing }.seed(&mesh, &all(&mesh));
-            // The area over that of a point, but for an edge of half a spacing: 10 / (1/6) / 2 points.
+            // The area of the body over the area of a point, without a strip of half a spacing at the edge: 10 / (1/6) / 2 points.
             assert!((cloud.len() as f64 - 216.0).abs() < 30.0, "{}", cloud.len());
             // Positions are held to 2^-41 of a cell of .5.
             assert!(gaps(&positions(&mesh, &cloud)).iter().all(|gap| (gap - spacing).abs() < 1e-12));

@@ -1,5 +1,5 @@
-//! Finds the cell of any point: a walk from the cell of the point before, else a bounding volume hierarchy over the cells;
-//! then the inverse map.
+//! Finds the cell of any point: first by a walk from the cell of the point before; if this fails, by a bounding volume
+//! hierarchy (a tree of boxes) over the cells. Then the inverse map gives its parent coordinates.
 
 use rayon::prelude::*;
 
@@ -7,8 +7,8 @@ use super::Cloud;
 use super::walk::Walk;
 use crate::mesh::{Mesh, map};
 
-/// Points this far outside of a cell, in parent coordinates, still belong to it: corners and edges are
-/// computed to a few 1e-16, and a point on the outer boundary must not be lost.
+/// Points that are this far outside a cell, in parent coordinates, still belong to it. Corners and edges are computed
+/// to a few 1e-16, and a point on the outer boundary must not be lost.
 const TOLERANCE: f64 = 1e-12;
 
 /// Cells in a leaf of the hierarchy. CPU s for 1e6 points in 1e6 cells, in random order and row by row: 2.7 and .67 with 2,
@@ -24,7 +24,7 @@ pub struct Outside {
     pub count: usize,
     /// Index of the first, from 0.
     pub first: usize,
-    /// Where it lies, in m.
+    /// The position of the first, in m.
     pub at: [f64; 2],
     /// Lower left and upper right corner of the mesh, in m.
     pub extent: [[f64; 2]; 2],
@@ -63,7 +63,7 @@ impl Extent {
     }
 }
 
-/// A cell as the hierarchy keeps it.
+/// A cell in the hierarchy.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     corners: map::Corners,
@@ -75,7 +75,7 @@ struct Entry {
 impl Entry {
     fn new(corners: map::Corners, cell: usize) -> Self {
         let far = corners.iter().flatten().fold(0.0, |far: f64, x| far.max(x.abs()));
-        // Far from the origin coordinates are rounded by eps |x|: in parent coordinates that, over h.
+        // Far from the origin coordinates are rounded by eps |x|. In parent coordinates this is eps |x| / h.
         let tolerance = TOLERANCE.max(16.0 * f64::EPSILON * far / map::h_e(&corners));
         Self { corners, cell, tolerance }
     }
@@ -97,7 +97,7 @@ impl Entry {
     }
 }
 
-/// A node of the hierarchy; its left child stands next to it.
+/// A node of the hierarchy. Its left child follows it in the list.
 #[derive(Debug, Clone, Copy)]
 struct Node {
     extent: Extent,
@@ -108,7 +108,8 @@ struct Node {
 #[derive(Debug, Clone)]
 pub struct Locator {
     entries: Vec<Entry>,
-    /// A balanced binary tree in depth-first order, each node over a run of entries that its children halve.
+    /// A balanced binary tree in depth-first order. Each node covers a run of entries; each of its two children covers
+    /// half of it.
     nodes: Vec<Node>,
     walk: Walk,
 }
@@ -123,15 +124,15 @@ impl Locator {
         Self { entries, nodes, walk }
     }
 
-    /// [`Locator::find`] from a cell that may be near: the same bits, sooner.
+    /// As [`Locator::find`], but faster if the given cell is near the point. The result is the same to the bit.
     pub fn find_from(&self, near: usize, x: [f64; 2]) -> Option<(usize, [f64; 2])> {
         self.walk.find(near, x).or_else(|| self.find(x))
     }
 
     /// The cell of a point and its parent coordinates in [0, 1]^2, or `None` outside of the mesh.
     ///
-    /// Cells are closed and share their edges: of all cells that a point on an edge or corner touches, the one
-    /// with the lowest index has it.
+    /// A cell includes its edges. A point on an edge or a corner belongs to the cell with the lowest index of all cells
+    /// that it touches.
     pub fn find(&self, x: [f64; 2]) -> Option<(usize, [f64; 2])> {
         let mut best: Option<(usize, [f64; 2])> = None;
         // Nodes still to be seen, with their entries: at most one beside each level of the tree, and levels are
@@ -164,7 +165,7 @@ impl Locator {
 }
 
 impl Locator {
-    /// Appends the cells whose boxes meet that from `low` to `high`, in no order.
+    /// Appends the cells whose boxes meet the box from `low` to `high`, in no particular order.
     pub fn overlapping(&self, low: [f64; 2], high: [f64; 2], out: &mut Vec<usize>) {
         let mut stack = [(0, 0, 0); usize::BITS as usize + 1];
         stack[0] = (0, 0, self.entries.len());
@@ -209,8 +210,8 @@ fn build(entries: &mut [Entry], nodes: &mut Vec<Node>) {
     }
 }
 
-/// A parent coordinate to 2^-40 (1e-12 of the cell): cells whose points agree up to the rounding of positions then have
-/// the same points to the bit, and share matrices.
+/// Rounds a parent coordinate to 2^-40 (1e-12 of the cell). Cells whose points agree up to the rounding of positions
+/// then have the same points to the bit, and share matrices.
 pub(crate) fn on_lattice(xi: f64) -> f64 {
     const STEPS: f64 = (1_u64 << 40) as f64;
     (xi * STEPS).round() / STEPS
@@ -219,9 +220,9 @@ pub(crate) fn on_lattice(xi: f64) -> f64 {
 /// Points that a thread locates one after the other, each from the cell of the one before.
 const RUN: usize = 1024;
 
-/// Where each point lies, as [`Locator::find`] says. They are taken along a Z-curve, whatever their order: CPU s for 1e6 points
-/// in 6e4 (2.5e5) cells .36 (.50) where they come by cells and .61 (.72) in random order; by the hierarchy alone 1.2 (1.5) and
-/// 2.6 (3.5).
+/// The cell of each point, as [`Locator::find`] gives it. The points are taken along a Z-curve, in any given order. CPU
+/// s for 1e6 points in 6e4 (2.5e5) cells .36 (.50) where they come by cells and .61 (.72) in random order; by the
+/// hierarchy alone 1.2 (1.5) and 2.6 (3.5).
 pub fn find_all(locator: &Locator, points: &[[f64; 2]]) -> Vec<Option<(usize, [f64; 2])>> {
     let extent = points.iter().fold(Extent::EMPTY, |extent, &x| extent.join(x, x));
     let mut order: Vec<(u32, usize)> = points.par_iter().map(|&x| z_curve(&extent, x)).zip(0..points.len()).collect();
@@ -245,7 +246,7 @@ pub fn find_all(locator: &Locator, points: &[[f64; 2]]) -> Vec<Option<(usize, [f
 fn z_curve(extent: &Extent, x: [f64; 2]) -> u32 {
     let spread = |i: usize| {
         let share = (x[i] - extent.low[i]) / (extent.high[i] - extent.low[i]);
-        // What is no number is 0.
+        // NaN becomes 0.
         let mut bits = (share * 65535.0) as u16 as u32;
         for (shift, mask) in [(8, 0x00ff_00ff), (4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)] {
             bits = (bits | bits << shift) & mask;
@@ -255,7 +256,8 @@ fn z_curve(extent: &Extent, x: [f64; 2]) -> u32 {
     spread(0) | spread(1) << 1
 }
 
-/// The cloud of located points, and for each of its points the number of the given one. Points of a cell keep their order.
+/// The cloud of located points, and for each point of the cloud its number in the given list. Points of a cell keep
+/// their order.
 pub fn sorted(cells: usize, found: impl Iterator<Item = Option<(usize, [f64; 2])>>) -> (Cloud, Vec<usize>) {
     let located = found.enumerate().filter_map(|(index, found)| found.map(|(cell, xi)| (cell, index, xi)));
     let mut located: Vec<_> = located.collect();

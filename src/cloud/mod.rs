@@ -19,7 +19,7 @@ pub struct Cloud {
 }
 
 impl Cloud {
-    /// The cloud of the cells 0..`cells`, where `push` appends the points of a cell.
+    /// The cloud of the cells 0..`cells`; `push` appends the points of a cell.
     pub fn of_cells(cells: usize, mut push: impl FnMut(usize, &mut Vec<[f64; 2]>)) -> Self {
         let mut cloud = Self { first: vec![0], xi: Vec::new() };
         for cell in 0..cells {

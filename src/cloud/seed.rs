@@ -1,7 +1,7 @@
 //! Seeding cell by cell: the same lattice of k x k points in every cell, or random points in their parent squares.
 //!
 //! Points of a lattice are ordered with xi1 slowest: point `p = i k + j` has the i-th fraction in xi1, the j-th in xi2.
-//! Each cell has its own stream of random numbers, so that they do not depend on the order of cells.
+//! Each cell has its own stream of random numbers, so that the points do not depend on the order of the cells.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -9,7 +9,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use super::Cloud;
 use crate::quadrature::gauss_legendre;
 
-/// Where the points of a cell lie, as fractions of its parent square in each direction.
+/// The arrangement of the points in a cell, as fractions of its parent square in each direction.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Layout {
@@ -26,16 +26,16 @@ pub enum Layout {
         /// Largest move in units of 1/k, 0 to 1/2 (beyond, points are held inside the cell).
         amount: f64,
     },
-    /// Anywhere in the parent square, each point on its own.
+    /// Random points in the parent square, independent of each other.
     Random {
         /// Seed of the generator.
         seed: u64,
     },
-    /// Gathered around random centres.
+    /// Random points around random centres.
     Cluster {
         /// Seed of the generator.
         seed: u64,
-        /// Centres in a cell; its points belong to them in turn.
+        /// The number of centres in a cell. Its points belong to the centres in turn.
         clusters: usize,
         /// Largest distance from the centre in each parent direction (points are held inside the cell).
         radius: f64,
@@ -43,15 +43,15 @@ pub enum Layout {
 }
 
 impl Layout {
-    /// The `amount` of a jitter that does not name one.
+    /// The default of `amount` of a jitter.
     pub const JITTER: f64 = 0.2;
-    /// The `clusters` of a layout that does not name them.
+    /// The default of `clusters` of a cluster layout.
     pub const CLUSTERS: usize = 4;
-    /// The `radius` of a cluster that does not name one.
+    /// The default of `radius` of a cluster layout.
     pub const RADIUS: f64 = 0.2;
 
-    /// The k fractions per direction, ascending (those of the lattice before it is moved, for a jitter; midpoints for
-    /// layouts that come from none).
+    /// The k fractions per direction, ascending. For a jitter they are those of the lattice before its points are
+    /// moved; for layouts without a lattice they are the midpoints.
     pub fn fractions(self, k: usize) -> Vec<f64> {
         let n = k as f64;
         match self {
@@ -105,8 +105,8 @@ pub(super) fn uniform(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 * 2f64.powi(-53)
 }
 
-/// The layout of a degree that names none: the paper's up to N = 2; midpoints above, where the paper's amplifies too
-/// much at the faces (Lebesgue constant 124 against 17 for N = 3 on a square cell).
+/// The default layout of a degree: the paper's up to N = 2; midpoints above, because there the paper's layout amplifies
+/// errors too much at the faces (Lebesgue constant 124 against 17 for N = 3 on a square cell).
 pub fn default_layout(degree: usize) -> Layout {
     if degree <= 2 { Layout::Paper } else { Layout::Midpoints }
 }

@@ -1,21 +1,23 @@
-//! From cell to cell across faces towards a point: the short way where the next point is near the last one.
+//! A walk from cell to cell across faces towards a point. It is fast if the point is near the one before.
 
 use crate::mesh::{Mesh, faces, map};
 
-/// Cells on the way before the walk gives up: points that follow each other are cells apart, not bodies, and the hierarchy is as
-/// fast as some ten cells that are not in the cache.
+/// The walk gives up after so many cells. Two points that follow each other are usually few cells apart, and the
+/// hierarchy takes as long as a walk over some ten cells that are not in the cache.
 const STEPS: usize = 16;
 
-/// A point nearer to a face than this part of the cell is left to the hierarchy, which looks at all cells that it touches.
+/// A point that is nearer to a face than this part of the cell is left to the hierarchy, which tests all cells that the
+/// point touches.
 const MARGIN: f64 = 1e-9;
 
-/// A cell as the walk sees it.
+/// A cell in the walk.
 #[derive(Debug, Clone, Copy)]
 struct Stop {
     corners: map::Corners,
-    /// Cells across its sides from corner k to corner k + 1; `NOWHERE` at the edge of the body.
+    /// The neighbour at its side from corner k to corner k + 1; `NOWHERE` at the edge of the body.
     next: [usize; 4],
-    /// A cross product of a side and the way to a point below which the point is too near to that side, m^2.
+    /// The limit, m^2, for the cross product of a side and the vector to a point. Below it the point is too near to
+    /// this side.
     margin: f64,
 }
 
@@ -31,8 +33,8 @@ pub(super) struct Walk {
 }
 
 impl Walk {
-    /// Of a mesh with convex cells; `tolerance` gives how far outside of a cell a point still belongs to it, in parent
-    /// coordinates.
+    /// The cells of a mesh with convex cells. A point that is up to `tolerance` outside a cell, in parent coordinates, still
+    /// belongs to it.
     pub(super) fn new(mesh: &Mesh, tolerance: impl Fn(usize) -> f64) -> Self {
         let next = faces::neighbours(mesh);
         let stop = |cell: usize| {
@@ -44,8 +46,8 @@ impl Walk {
         Self { stops: (0..mesh.cells.len()).map(stop).collect() }
     }
 
-    /// The cell that holds a point well inside, from a cell nearby. None where the way leaves the body, is long, or ends
-    /// near a face.
+    /// The cell that has the point well inside, found from a cell nearby. `None` if the way leaves the body, is long,
+    /// or ends near a face.
     pub(super) fn find(&self, from: usize, x: [f64; 2]) -> Option<(usize, [f64; 2])> {
         let mut cell = from;
         for _ in 0..STEPS {

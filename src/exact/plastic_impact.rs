@@ -7,7 +7,7 @@ use crate::material::{Internal, Law};
 ///
 /// In uniaxial strain the direction of plastic flow does not change, so that the law in one step from virgin material is
 /// its loading path P11(F11) exactly. P11'' < 0 on both branches and P11' falls at yield: from the state at yield a second,
-/// slower shock follows the first. Jump conditions (3) across each: rho0 S^2 = [P11]/[F11] and S [F11] = -[v1]; behind the
+/// slower shock follows the first. Jump conditions (3) across each: `rho0 S^2 = [P11]/[F11]` and `S [F11] = -[v1]`; behind the
 /// last v1 = 0. Where the plastic shock would overtake the elastic one there is one shock, below yield the elastic one.
 /// Valid until a wave from another boundary arrives.
 #[derive(Debug, Clone)]

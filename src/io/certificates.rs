@@ -6,7 +6,7 @@ use super::store::{ArrayRef, Store};
 use crate::error::Result;
 use crate::operators::{Certificate, Class};
 
-/// Certificates of all cells, figure by figure.
+/// Certificates of all cells: one list for each figure.
 #[derive(Debug, Default)]
 pub(super) struct Columns {
     whole: [Vec<usize>; 3],
@@ -17,7 +17,7 @@ const WHOLE: [&str; 3] = ["cell_class", "cell_points", "cell_rank"];
 const REAL: [&str; 5] = ["cell_condition", "cell_face_lebesgue", "cell_node_lebesgue", "cell_h", "cell_dt"];
 
 impl Columns {
-    /// From the certificates.
+    /// The lists of these certificates.
     pub(super) fn of(all: &[Certificate]) -> Self {
         let mut out = Self::default();
         for cell in all {
@@ -29,7 +29,7 @@ impl Columns {
         out
     }
 
-    /// Arrays to write; none without certificates.
+    /// The arrays to write; an empty list if there are no certificates.
     pub(super) fn arrays(&self) -> Vec<(&'static str, Vec<usize>, ArrayRef<'_>)> {
         if self.whole[0].is_empty() {
             return vec![];
@@ -40,7 +40,7 @@ impl Columns {
     }
 }
 
-/// Reads certificates back; none where the file holds none.
+/// Reads certificates back; `None` if the file holds no certificates.
 pub(super) fn read(store: &mut Store, cells: usize) -> Result<Vec<Certificate>> {
     if !store.names().any(|name| name == WHOLE[0]) {
         return Ok(vec![]);

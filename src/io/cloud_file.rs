@@ -19,10 +19,10 @@ use crate::operators::Certificate;
 /// The format of `cloud.h5`.
 pub const FORMAT: Format = Format { name: "dgmpm cloud", version: 2, remedy: "write it again by `dgmpm seed`" };
 
-/// What names of fields begin with.
+/// The prefix of the names of fields.
 const FIELD: &str = "field_";
 
-/// What a file may hold beside the places of the points; each part is empty where it does not.
+/// What a file may hold beside the positions of the points. A part that the file does not hold is empty.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct More {
     /// Whether each point is virtual.
@@ -38,7 +38,7 @@ pub fn write_cloud(path: &Path, cloud: &Cloud, mesh: &Mesh) -> Result<()> {
     write_with(path, cloud, mesh, &More::default())
 }
 
-/// Writes the cloud of a mesh, and more of it.
+/// Writes the cloud of a mesh, with the further parts of [`More`].
 pub fn write_with(path: &Path, cloud: &Cloud, mesh: &Mesh, more: &More) -> Result<()> {
     if let Some(what) = fault(cloud).or_else(|| misfit(cloud, mesh)).or_else(|| too_few(cloud, more)) {
         return Err(Error::output(path, what));
@@ -84,7 +84,7 @@ pub fn read_cloud_of(path: &Path, mesh: &Mesh) -> Result<Cloud> {
     Ok(read_with(path, mesh)?.0)
 }
 
-/// Reads a cloud that must belong to this mesh, and all that is known of it.
+/// Reads a cloud that must belong to this mesh, with all further parts of the file.
 pub fn read_with(path: &Path, mesh: &Mesh) -> Result<(Cloud, More)> {
     let mut store = Store::read(path, FORMAT)?;
     let cloud = read_places(&mut store)?;
@@ -112,7 +112,7 @@ pub fn read_with(path: &Path, mesh: &Mesh) -> Result<(Cloud, More)> {
     }
 }
 
-/// Whether a point has no flag or no value of a field.
+/// Whether a flag or a value of a field is missing for some point.
 fn too_few(cloud: &Cloud, more: &More) -> Option<String> {
     let flags = more.virtual_points.len();
     if flags != 0 && flags != cloud.len() {
@@ -122,7 +122,7 @@ fn too_few(cloud: &Cloud, more: &More) -> Option<String> {
     Some(format!("the field `{}` does not have a value for each of the {} points", misfit.name, cloud.len()))
 }
 
-/// What is wrong with the numbers of a cloud, if anything.
+/// The first fault in the numbers of a cloud, if there is one.
 fn fault(cloud: &Cloud) -> Option<String> {
     let first = &cloud.first;
     if first.first() != Some(&0) || first.last() != Some(&cloud.len()) || !first.is_sorted() {

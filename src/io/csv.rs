@@ -1,4 +1,5 @@
-//! Tables as CSV, row by row while a run goes on, each number by the shortest text that gives its bits again.
+//! Tables as CSV, written row by row during a run. Each number is the shortest text that gives the same bits when it is
+//! read.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -15,7 +16,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Starts a table with these columns, in place of a file of that name.
+    /// Starts a table with these columns. It replaces a file of that name.
     pub fn create(path: &Path, columns: &[&str]) -> Result<Self> {
         if let Some(folder) = path.parent().filter(|f| !f.as_os_str().is_empty()) {
             std::fs::create_dir_all(folder).map_err(|e| Error::output(folder, e))?;
@@ -39,7 +40,7 @@ impl Table {
         self.line(texts.join(","))
     }
 
-    /// Brings all rows so far to the disk.
+    /// Writes all rows so far to the disk.
     pub fn flush(&mut self) -> Result<()> {
         self.file.flush().map_err(|e| Error::output(&self.path, e))
     }

@@ -37,13 +37,13 @@ pub struct Field {
 }
 
 impl Field {
-    /// A field from its parts.
+    /// A field from its name, its number of components and its values.
     pub fn new(name: impl Into<String>, kind: Kind, values: Vec<f64>) -> Self {
         Self { name: name.into(), kind, values }
     }
 }
 
-/// A grid of quadrilaterals with own nodes for each cell, so that fields may jump from cell to cell.
+/// A grid of quadrilaterals. Each cell has its own nodes, so that fields may jump from cell to cell.
 ///
 /// Cell c owns the points `c * n .. (c + 1) * n` with n = [`HighOrderGrid::nodes_per_cell`], in the order of
 /// [`lagrange_quad_nodes`].
@@ -107,7 +107,7 @@ impl PointCloud {
     }
 }
 
-/// Checks lengths and names of fields that live on `count` points or cells.
+/// Checks lengths and names of fields with a value at each of `count` points or cells.
 pub(super) fn check_fields(fields: &[Field], count: usize) -> Result<()> {
     for (k, field) in fields.iter().enumerate() {
         let name = &field.name;

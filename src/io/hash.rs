@@ -3,12 +3,13 @@
 use crate::cloud::Cloud;
 use crate::mesh::Mesh;
 
-/// Feeds counts, numbers and texts to blake3, each list with its length, so that no two contents look alike.
+/// Feeds counts, numbers and texts to blake3. Each list comes with its length, so that different contents never give
+/// the same bytes.
 #[derive(Debug, Default)]
 pub struct Digest(blake3::Hasher);
 
 impl Digest {
-    /// Nothing fed yet.
+    /// A hash without any input yet.
     pub fn new() -> Self {
         Self::default()
     }

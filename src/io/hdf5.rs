@@ -1,4 +1,4 @@
-//! Thin helpers over `hdf5-metno`: whole files, checked datasets, errors that name the file.
+//! Helpers for `hdf5-metno`: files that are written whole, datasets that are checked, errors that name the file.
 
 use std::path::Path;
 
@@ -14,12 +14,12 @@ use crate::error::{Error, Place, Result};
 const CHUNK_BYTES: usize = 256 * 1024;
 /// Arrays below this many bytes are stored whole, as chunks would only add overhead.
 const SMALL_BYTES: usize = 8 * 1024;
-/// Deflate packs at most 1032 to 1: a dataset that claims more bytes than this times the file is not genuine.
+/// Deflate compresses at most 1032 to 1. A dataset that claims more bytes than this times the size of the file is damaged.
 const LARGEST_RATIO: u64 = 1100;
-/// After a byte shuffle, levels 1, 4, 9 pack a smooth S2 state to .467, .463, .457 of its size at 70, 40, 6 MB/s.
+/// After a byte shuffle, levels 1, 4, 9 compress a smooth S2 state to .467, .463, .457 of its size at 70, 40, 6 MB/s.
 const DEFLATE_LEVEL: u8 = 1;
 
-/// An open file for reading, with what is needed for its messages.
+/// A file that is open for reading, with its path and remedy for messages.
 pub struct Reader {
     file: h5::File,
     place: Place,
@@ -40,12 +40,12 @@ pub enum Values {
     Text(Vec<String>),
 }
 
-/// Creates a file by `fill`, whole or not at all.
+/// Creates a file by `fill`. The file appears whole, or not at all.
 pub fn create(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<()> {
     fill_pending(path, fill)?.commit()
 }
 
-/// Creates a file by `fill`, whole or not at all, with a seal by which damage is found.
+/// Creates a file by `fill`, with a seal that shows later damage. The file appears whole, or not at all.
 pub fn create_sealed(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<()> {
     let pending = fill_pending(path, fill)?;
     seal::put(pending.path()).map_err(|e| Error::output(path, e))?;
@@ -61,8 +61,8 @@ fn fill_pending(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> 
     Ok(pending)
 }
 
-/// What went wrong, on one line: the system's words where HDF5 quotes them, else the first line without times and
-/// addresses.
+/// The cause of an error of HDF5, on one line: the text of the operating system if HDF5 quotes it, otherwise the first line
+/// without times and addresses.
 pub fn reason(error: &h5::Error) -> String {
     let text = error.to_string();
     let quoted =
@@ -147,7 +147,7 @@ impl Reader {
         Ok(Self { file, place, bytes: about.len(), remedy: remedy.to_owned() })
     }
 
-    /// The error "this file is not as it should be".
+    /// The error that the file is damaged or has wrong contents.
     pub fn error(&self, what: impl Into<String>) -> Error {
         Error::at(self.place.clone(), what, self.remedy.clone())
     }
@@ -192,7 +192,7 @@ impl Reader {
         Ok((shape, values))
     }
 
-    /// Refuses a size that the file cannot hold, before memory is asked for.
+    /// An error if the size is more than the file can hold. It is tested before memory is allocated.
     fn check_size(&self, name: &str, shape: &[usize], kind: &TypeDescriptor) -> Result<()> {
         let bytes = shape.iter().try_fold(kind.size() as u64, |product, &n| product.checked_mul(n as u64));
         match bytes {

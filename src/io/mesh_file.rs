@@ -48,7 +48,7 @@ pub fn read_mesh(path: &Path) -> Result<Mesh> {
     }
 }
 
-/// What is wrong with the numbers of a mesh, if anything: lengths and ranges, not geometry.
+/// The first fault in the numbers of a mesh, if there is one: lengths and ranges, not geometry.
 fn fault(mesh: &Mesh) -> Option<String> {
     let cells = mesh.cells.len();
     if mesh.cell_group.len() != cells || mesh.original.len() != cells {

@@ -1,4 +1,4 @@
-//! `operators.h5`: the stored matrices, keyed by what they were built from.
+//! `operators.h5`: the stored matrices, with a key: a hash of the input that they were built from.
 
 use std::path::Path;
 
@@ -17,11 +17,11 @@ use crate::operators::{Blocks, Certificate, Needs, Sampling, Stored};
 pub const FORMAT: Format =
     Format { name: "dgmpm operators", version: 4, remedy: "write it again by `dgmpm preprocess`" };
 
-/// The version since which matrices are the same: those of older files are built again.
+/// The first version whose matrices are those of today. Matrices of older files are built again.
 const MATRICES: u32 = 3;
 
-/// The key: a hash of mesh, pairs of periodic groups, cloud (or nodes), degree, the law of each cell, and which
-/// matrices are asked for.
+/// The key: a hash of the mesh, the pairs of periodic groups, the cloud (or nodes), the degree, the law of each cell,
+/// and the list of matrices that the run needs.
 pub fn key(mesh: &Mesh, periodic: &[[usize; 2]], material: &[usize], needs: &Needs) -> String {
     let mut digest = Digest::new();
     digest.text(FORMAT.name).count(MATRICES as usize).text(&hash::of_mesh(mesh)).count(needs.degree);
@@ -54,13 +54,13 @@ pub fn write(path: &Path, key: &str, stored: &Stored, certificates: &[Certificat
     write_arrays(path, FORMAT, &[("key", key.to_owned())], &arrays)
 }
 
-/// Whether new matrices may take the place of a file: it holds matrices, or is a damaged store of whatever kind.
+/// Whether new matrices may replace a file: yes if it holds matrices, or is a damaged store of any kind.
 pub fn may_replace(path: &Path) -> bool {
     let ours = || hdf5::peek_attribute(path, "format").is_some_and(|name| name == FORMAT.name);
     matches!(seal::check(path), Ok(Seal::Broken)) || ours()
 }
 
-/// Reads the matrices if they have this key; none where the file is missing or was built from other input.
+/// Reads the matrices if they have this key; `None` if the file is missing or was built from other input.
 ///
 /// # Errors
 /// A file that is damaged.

@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::{Error, Result};
 
-/// A file under a temporary name beside its target: [`Pending::commit`] renames it, dropping it removes it.
+/// A file under a temporary name in the folder of its target. [`Pending::commit`] renames it to the target; without a
+/// commit it is removed when it is dropped.
 #[derive(Debug)]
 pub struct Pending {
     target: PathBuf,
@@ -21,7 +22,7 @@ impl Pending {
         if target.is_dir() {
             return Err(Error::output(target, "a folder of this name exists"));
         }
-        // The new file takes the place of the old one: of a device that would be the end.
+        // The new file replaces the old one. A device must not be replaced by a file.
         if target.exists() && !target.is_file() {
             return Err(Error::output(target, "it is no file but a device, a pipe or a socket"));
         }
@@ -33,17 +34,17 @@ impl Pending {
         Ok(Self { target: target.to_owned(), temporary: target.with_file_name(part) })
     }
 
-    /// Where to write.
+    /// The temporary path: write here.
     pub fn path(&self) -> &Path {
         &self.temporary
     }
 
-    /// The name that the file will have.
+    /// The path that the file gets by the commit.
     pub fn target(&self) -> &Path {
         &self.target
     }
 
-    /// Gives the file its name, in place of what stood there.
+    /// Renames the file to its target and replaces a file of that name.
     pub fn commit(self) -> Result<()> {
         fs::rename(&self.temporary, &self.target).map_err(|e| Error::output(&self.target, e))
     }

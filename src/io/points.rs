@@ -8,7 +8,7 @@ use vtkio::model::{Attribute, DataSet, Vtk};
 use super::grid::{Field, Kind};
 use crate::error::{Error, Place, Result};
 
-/// What a file of points has to be.
+/// What a file of points must be, for messages.
 const REMEDY: &str = "give a VTU file with its points in m, or rows x, y in m";
 
 /// Points with their fields.
@@ -22,9 +22,9 @@ pub fn read(path: &Path) -> Result<Vec<[f64; 2]>> {
     Ok(read_with_fields(path)?.0)
 }
 
-/// Reads positions as [`read`] does, and all fields: of a VTU file those with 1, 3 or 9 components; of rows the columns
-/// beside x, y (the first two, where no column has these names) by their names, where `name_1, name_2` are a vector and `name_11, name_12, name_21, name_22` a tensor in the
-/// plane.
+/// Reads positions as [`read`] does, and all fields. In a VTU file these are the fields with 1, 3 or 9 components. In rows
+/// they are the named columns other than x, y (or other than the first two, if no column is named x or y):
+/// `name_1, name_2` is a vector, `name_11, name_12, name_21, name_22` a tensor in the plane.
 ///
 /// # Errors
 /// As for [`read`]; a row with fewer numbers than names.
@@ -61,7 +61,7 @@ fn vtu(path: &Path) -> Result<Found> {
             }
         }
     }
-    // A field that not every piece has is none.
+    // A field must be in every piece of the file; otherwise it is ignored.
     fields.retain(|field| field.values.len() == points.len() * field.kind.components());
     Ok((points, fields))
 }
@@ -69,7 +69,7 @@ fn vtu(path: &Path) -> Result<Found> {
 fn rows(path: &Path) -> Result<Found> {
     let text = std::fs::read_to_string(path)
         .map_err(|why| Error::at(Place::file(path), format!("cannot read the points: {why}"), REMEDY))?;
-    // Spreadsheets begin UTF-8 with a mark.
+    // Spreadsheets write a byte order mark at the start of UTF-8.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let (mut names, mut numbers, mut count) = (Vec::new(), Vec::new(), None);
     for (line, text) in text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty()) {
@@ -94,7 +94,7 @@ fn rows(path: &Path) -> Result<Found> {
     Ok((points, fields_of(others.map(|(k, name)| (name, column(k))).collect())))
 }
 
-/// What is wrong with a row, and what would be right.
+/// The fault of a row, and how to correct it.
 type Fault = (String, &'static str);
 
 /// The entries of a row, between commas or blanks.
@@ -115,7 +115,7 @@ fn words(row: &str) -> std::result::Result<Vec<&str>, Fault> {
     }
 }
 
-/// Whether a word of the first row is a name: no number, and none that is misspelt.
+/// Whether a word of the first row is a name: it is not a number, and not a misspelt number.
 fn is_name(word: &str) -> bool {
     let first = word.trim_start_matches(['"', '\'']).chars().next();
     word.parse::<f64>().is_err() && first.is_some_and(|first| first.is_alphabetic() || first == '_')
@@ -140,7 +140,7 @@ fn numbers_of(words: &[&str], names: &[String], before: Option<usize>) -> std::r
     }
 }
 
-/// The columns of x and y: by their names, which may be those of ParaView, else the first two.
+/// The columns of x and y: by their names (also those of ParaView), otherwise the first two columns.
 fn place_of(names: &[String]) -> [usize; 2] {
     let find = |known: [&str; 2]| names.iter().position(|name| known.iter().any(|k| name.eq_ignore_ascii_case(k)));
     match (find(["x", "Points:0"]), find(["y", "Points:1"])) {

@@ -1,14 +1,14 @@
-//! A checksum at the end of a file, so that damage is found before HDF5 sees it: on a damaged file the HDF5 library
-//! may ask for absurd amounts of memory or crash.
+//! A checksum at the end of a file. It shows damage before the HDF5 library reads the file: on a damaged file the library
+//! may allocate very much memory or crash.
 //!
-//! The seal is one line of text behind the last byte of HDF5, which every HDF5 library ignores. Whoever changes the
-//! file through HDF5 thereby cuts the seal off, and the file is read as any other.
+//! The seal is one line of text after the last byte of HDF5. Every HDF5 library ignores it. A program that changes the file
+//! through HDF5 cuts the seal off; the file is then read without a check.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Result, Seek, SeekFrom, Write};
 use std::path::Path;
 
-/// What stands before the 64 hexadecimal digits of the blake3 of all bytes before it.
+/// The text before the 64 hexadecimal digits. The digits are the blake3 hash of all bytes before the seal.
 const MARK: &[u8] = b"\ndgmpm-seal ";
 /// Bytes of a seal: the mark, the digits, an end of line.
 const LENGTH: u64 = MARK.len() as u64 + 64 + 1;
@@ -16,9 +16,9 @@ const LENGTH: u64 = MARK.len() as u64 + 64 + 1;
 /// Whether a file is as it was when it was sealed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Seal {
-    /// It has a seal that holds.
+    /// It has a seal, and its bytes agree with it.
     Whole,
-    /// It has a seal that does not hold.
+    /// It has a seal, but its bytes do not agree with it: it is damaged.
     Broken,
     /// It has no seal.
     None,
@@ -32,7 +32,7 @@ pub fn put(path: &Path) -> Result<()> {
     file.write_all(&[MARK, digits.as_bytes(), b"\n"].concat())
 }
 
-/// Looks at the seal of a file.
+/// Checks the seal of a file.
 pub fn check(path: &Path) -> Result<Seal> {
     let mut file = File::open(path)?;
     let Some(length) = file.metadata()?.len().checked_sub(LENGTH) else { return Ok(Seal::None) };

@@ -1,4 +1,5 @@
-//! `snapshots/000123.h5`: the state after a step, one file each, so that a killed run leaves only whole ones.
+//! `snapshots/000123.h5`: the state after a step. Each state is a file of its own, so that a killed run leaves only whole
+//! files.
 //!
 //! Arrays, with M = degree + 1: `time` in s and `step`; `u` (cells, 6, M, M), the grid unknowns F11, F12, F21, F22, p1,
 //! p2 at the Gauss nodes (node i along xi1, j along xi2); `displacement` (cells, 2, M, M) or empty; `internal` (n), the
@@ -27,7 +28,8 @@ pub struct Snapshot {
     pub u: Vec<f64>,
     /// Displacement `[cell][component 0..2][node]`, in m; empty if it is not integrated.
     pub displacement: Vec<f64>,
-    /// That of it whose jumps are not held, of the same shape; empty where all are ([`crate::state::State::unheld`]).
+    /// The part of the displacement whose jumps are not held by the flux, of the same shape; empty if all jumps are held
+    /// ([`crate::state::State::unheld`]).
     pub unheld: Vec<f64>,
     /// Internal variables `[cell][point][variable]`, none for cells of elastic laws.
     pub internal: Vec<f64>,
@@ -51,19 +53,19 @@ impl Default for GridFiles {
 }
 
 impl GridFiles {
-    /// Those of a grid that came in after a step: `mesh_000120.h5`, `cloud_000120.h5`.
+    /// The names for a grid that the run changed to after a step: `mesh_000120.h5`, `cloud_000120.h5`.
     pub fn after(step: usize) -> Self {
         Self { mesh: format!("mesh_{step:06}.h5"), cloud: format!("cloud_{step:06}.h5") }
     }
 }
 
 impl Snapshot {
-    /// Number of cells that the unknowns are for.
+    /// Number of cells in the list of unknowns.
     pub fn cells(&self) -> usize {
         self.u.len() / (6 * (self.degree + 1).pow(2))
     }
 
-    /// `[cell][component][node]` of the first `components` of F, p, u; a u that the snapshot lacks is 0.
+    /// The first `components` of F, p, u as `[cell][component][node]`. u is 0 if the snapshot has no displacement.
     pub fn unknowns(&self, components: usize) -> Vec<f64> {
         let nodes = (self.degree + 1).pow(2);
         let mut all = Vec::with_capacity(self.cells() * components * nodes);
@@ -76,7 +78,7 @@ impl Snapshot {
         all
     }
 
-    /// Numbers of a cell in [`Snapshot::unheld`]; 0 where there are none.
+    /// How many numbers each cell has in [`Snapshot::unheld`]; 0 if it is empty.
     pub fn unheld_stride(&self) -> usize {
         if self.unheld.is_empty() { 0 } else { 2 * (self.degree + 1).pow(2) }
     }
@@ -131,7 +133,7 @@ impl Snapshot {
         let name = |key: &str, usual: String| store.attribute(key).map_or(usual, str::to_owned);
         let GridFiles { mesh, cloud } = GridFiles::default();
         let grid = GridFiles { mesh: name("mesh", mesh), cloud: name("cloud", cloud) };
-        // Files of earlier versions have none.
+        // Files of earlier versions have no such array.
         let known = store.names().any(|name| name == "unheld");
         let unheld = if known { store.reals("unheld", &[2, side, side])? } else { vec![] };
         Ok(Self {
@@ -151,7 +153,7 @@ impl Snapshot {
     }
 }
 
-/// Where the snapshot after a step stands in its folder: `000123.h5`.
+/// The file name of the snapshot after a step: `000123.h5`.
 pub fn path(folder: &Path, step: usize) -> PathBuf {
     folder.join(format!("{step:06}.h5"))
 }

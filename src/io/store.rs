@@ -1,5 +1,5 @@
 //! Named arrays and text attributes in one sealed HDF5 file, with the name and version of the format. Mesh, cloud and
-//! snapshot files are stores, and so may anything else be that has to outlive a process.
+//! snapshot files are stores. Any other data that has to outlive a process may be a store too.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -8,14 +8,14 @@ use std::path::Path;
 use super::hdf5::{self, Reader, Values};
 use crate::error::{Error, Result};
 
-/// What a file is, and by which command it is made again.
+/// The format of a file, and the command that makes the file again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Format {
     /// The name, such as `dgmpm mesh`.
     pub name: &'static str,
-    /// The version that this program writes; it reads this one and those before.
+    /// The version that this program writes. It reads this version and all before it.
     pub version: u32,
-    /// What to do about a file that cannot be used.
+    /// What the user can do about a file that cannot be used.
     pub remedy: &'static str,
 }
 
@@ -34,7 +34,7 @@ pub enum ArrayRef<'a> {
     Text(&'a [String]),
 }
 
-/// A file as read: take its arrays out by name.
+/// A file that was read. Its arrays are taken out by name.
 #[derive(Debug)]
 pub struct Store {
     place: crate::error::Place,
@@ -89,7 +89,7 @@ impl Store {
         Ok(Self { place: crate::error::Place::file(path), remedy: format.remedy, attributes, arrays })
     }
 
-    /// The error "this file is not as it should be".
+    /// The error that the file is damaged or has wrong contents.
     pub fn error(&self, what: impl Into<String>) -> Error {
         Error::at(self.place.clone(), what, self.remedy)
     }
@@ -132,7 +132,7 @@ impl Store {
         }
     }
 
-    /// Takes unsigned integers whose shape is `[any, tail..]`; signed ones will do where none is negative.
+    /// Takes unsigned integers whose shape is `[any, tail..]`; signed ones are accepted if none is negative.
     pub fn unsigned(&mut self, name: &str, tail: &[usize]) -> Result<Vec<u64>> {
         let values = match self.with_tail(name, tail)? {
             Values::U64(values) => Some(values),
@@ -182,7 +182,7 @@ fn check_format(reader: &Reader, attributes: &BTreeMap<String, String>, format: 
     }
 }
 
-/// Whether a file is meant as a store, whole or damaged: by its name or its first bytes.
+/// Whether a file should be a store, by its name or its first bytes. It may be damaged.
 pub fn is_meant_as_store(path: &Path) -> bool {
     let signature = b"\x89HDF\r\n\x1a\n";
     let mut start = Vec::new();
@@ -190,7 +190,7 @@ pub fn is_meant_as_store(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "h5") || read.is_ok() && start == signature
 }
 
-/// Whether a file is a store of this program, of whatever format (which output must never replace by another kind).
+/// Whether a file is a store of this program, of any format. An output of another kind must never replace it.
 pub fn is_store(path: &Path) -> bool {
     hdf5::peek_attribute(path, FORMAT).is_some_and(|name| name.starts_with("dgmpm "))
 }

@@ -1,7 +1,7 @@
 //! VTU files (VTK XML, unstructured grid) for ParaView, VTK, pyvista and meshio.
 //!
-//! Inline base64 of 64-bit numbers, not packed: the packed writer of `vtkio` 0.7.0-rc2 adds an empty block to an array
-//! whose bytes are a multiple of its block, which VTK then reads as a full one.
+//! Numbers have 64 bits and are written inline as base64, not compressed. The compressing writer of `vtkio` 0.7.0-rc2
+//! adds an empty block to an array whose bytes are a multiple of the block; VTK then reads this block as a full one.
 
 use std::path::Path;
 
@@ -34,7 +34,7 @@ fn coordinates(points: &[[f64; 3]]) -> vtkio::IOBuffer {
     vtkio::IOBuffer::F64(points.as_flattened().to_vec())
 }
 
-/// Cells that own their `size` points, one cell after the other.
+/// Cells with `size` own points each; the points of one cell follow those of the cell before.
 fn cells(count: usize, size: usize, kind: CellType) -> Cells {
     let connectivity = (0..(count * size) as u64).collect();
     let offsets = (1..=count as u64).map(|c| c * size as u64).collect();
@@ -58,8 +58,8 @@ fn write(path: &Path, piece: UnstructuredGridPiece) -> Result<()> {
         file_path: None,
     };
     let xml = file.try_into_xml_format(Compressor::None, 0).map_err(|e| Error::output(path, e))?;
-    // vtkio marks indices as unsigned, with which meshio cannot compute; below 2^63 the bytes are the same. Only an
-    // attribute can hold a quote, so nothing else is touched.
+    // vtkio marks indices as unsigned, and meshio cannot compute with unsigned indices; below 2^63 the bytes are the same.
+    // Only an attribute can hold a quote, so this changes nothing else.
     let text = xml.to_string().replace(" type=\"UInt64\"", " type=\"Int64\"");
     write_text(path, &format!("<?xml version=\"1.0\"?>\n{text}\n"))
 }

@@ -1,4 +1,4 @@
-//! The axes of cells: which of its corners a cell counts from.
+//! The axes of cells: the corner from which a cell counts its corners.
 
 use super::{BoundaryEdge, Link, Mesh, links};
 use std::collections::VecDeque;
@@ -12,16 +12,18 @@ const AROUND: [usize; 4] = [1, 3, 0, 2];
 /// The place of each face in [`AROUND`].
 const QUARTER: [usize; 4] = [2, 0, 3, 1];
 
-/// Rounds in which cells follow the most of their neighbours; none turns in vain, so that there are few.
+/// The largest number of rounds in which cells turn to agree with most of their neighbours. Each turn makes more faces
+/// agree, so that few rounds are needed.
 const ROUNDS: usize = 50;
 
 impl Mesh {
-    /// The mesh with its cells turned by quarters (their corners counted from another one on) so that neighbours have the
-    /// same axes wherever they can: the step then finds what lies across the faces of eight cells in fewer places. A mesh in
-    /// rows, and one whose links are at fault, stays as it is.
+    /// The mesh with its cells turned by quarters (their corners counted from another one on) so that neighbours have
+    /// the same axes where this is possible. The step then reads the other sides of the faces of eight cells from fewer
+    /// places. A mesh in rows stays as it is, and so does a mesh whose links are wrong.
     ///
-    /// Nodes where three or five cells meet make it impossible to turn all of them alike. Cells follow those of their
-    /// neighbours that have been turned, outwards from the first one, then all of them as long as more faces agree.
+    /// Where three or five cells meet at a node, not all of them can have the same axes. First each cell follows its
+    /// neighbours that have been turned, outwards from the first cell. Then all cells are turned as long as more faces
+    /// agree.
     pub fn with_common_axes(mut self) -> Self {
         let Ok(links) = links(&self) else { return self };
         let mut turns: Vec<Option<usize>> = vec![None; links.len()];
@@ -65,11 +67,12 @@ fn outwards(links: &[[Link; 4]]) -> Vec<usize> {
     order
 }
 
-/// The quarter turns with which most neighbours of a cell agree; those that it has, if no others are better, none at first.
+/// The number of quarter turns with which most neighbours of a cell agree. It is the present number if no other is
+/// better, and 0 at the start.
 fn best(links: &[[Link; 4]], turns: &[Option<usize>], cell: usize) -> usize {
     let agrees = |turn: usize, (face, link): (usize, &Link)| match *link {
         Link::Cell { cell, face: entry, .. } => {
-            // Behind opposite faces both run the same way, since all cells are counter-clockwise.
+            // At opposite faces both axes run the same way, because all cells are counter-clockwise.
             turns[cell].is_some_and(|theirs| turned(entry, theirs) == OPPOSITE[turned(face, turn)])
         }
         Link::Boundary(_) => false,
@@ -98,7 +101,7 @@ mod tests {
         mesh
     }
 
-    /// Inner faces behind which the axes are others.
+    /// The number of inner faces whose two cells have different axes.
     fn broken(mesh: &Mesh) -> usize {
         let links = links(mesh).unwrap();
         let breaks = |(face, link): &(usize, &Link)| match **link {
@@ -127,7 +130,7 @@ mod tests {
         assert!(broken(&mesh) > 0);
         let common = mesh.with_common_axes();
         assert_eq!(broken(&common), 0);
-        // The first cell was not turned: all are those of the rectangle, and what bears a group does.
+        // The first cell was not turned. So all cells are those of the rectangle, and the groups are at the same edges.
         assert_eq!(common, rectangle([13.0, 11.0], [13, 11]).unwrap());
     }
 

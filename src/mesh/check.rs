@@ -1,9 +1,9 @@
-//! From raw lists to a mesh that can be computed on.
+//! From raw lists to a checked mesh.
 
 use super::{Error, Mesh, map, quality};
 
-/// Corners below this scaled Jacobian are refused. The time step shrinks in proportion to it, and the inverse
-/// map of such a cell keeps no more than half of the digits.
+/// A corner below this scaled Jacobian is an error. The time step shrinks in proportion to it, and the inverse map of such a
+/// cell is exact to half of the digits at most.
 pub const SMALLEST_SCALED_JACOBIAN: f64 = 1e-8;
 
 /// The local face that each face of a reversed cell becomes: corner 0 stays, xi1 and xi2 are exchanged.
@@ -29,7 +29,7 @@ impl Mesh {
         Ok(self)
     }
 
-    /// All indices point into their lists, and there are cells.
+    /// Checks that all indices point into their lists, and that there are cells.
     pub fn consistent(&self) -> Result<(), Error> {
         let refuse = |what: String| Err(Error::Inconsistent { what });
         let count = self.cells.len();
@@ -71,7 +71,7 @@ impl Mesh {
         let corners = self.corners(cell);
         let scaled = quality::corner_jacobians(&corners);
         let worst = (1..4).fold(0, |worst, k| if scaled[k] < scaled[worst] { k } else { worst });
-        // Written so that NaN (edges whose squares under- or overflow) is refused too.
+        // Written so that NaN (edges whose squares underflow or overflow) is an error too.
         if scaled.iter().all(|s| *s >= SMALLEST_SCALED_JACOBIAN) {
             return Ok(());
         }

@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh: what, where (coordinates and cell numbers), and what would be right.
+//! The faults of a mesh: what is wrong, where (coordinates and cell numbers), and how to correct it.
 
 /// A mesh that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -91,9 +91,9 @@ pub enum Error {
     Duplicate {
         /// How many pairs.
         count: usize,
-        /// Where the first lies.
+        /// The position of the first pair.
         at: [f64; 2],
-        /// Numbers of a cell of each of the two.
+        /// For each of the two nodes, the number of a cell that has it.
         cells: [u64; 2],
     },
     /// A boundary edge in two groups.
@@ -121,7 +121,7 @@ pub enum Error {
         at: [[f64; 2]; 2],
         /// Number of its cell.
         cell: u64,
-        /// Where the translation between the groups takes it.
+        /// Its ends after the translation between the groups.
         moved: [[f64; 2]; 2],
         /// The names of both groups.
         groups: [String; 2],
@@ -129,7 +129,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// What would be right.
+    /// How to correct it.
     pub fn remedy(&self) -> String {
         let text = match self {
             Error::Rectangle { .. } => "give two finite sizes above 0 and at least one cell in each direction",
@@ -142,7 +142,7 @@ impl Error {
             Error::Inverted { .. } => {
                 "every corner must turn the same way with an angle between 0 and 180 degrees: smooth the mesh there, or mesh it finer"
             }
-            Error::Turned { .. } => "move nodes by less than a part of the smallest cell",
+            Error::Turned { .. } => "move the nodes by less: by a small part of the smallest cell",
             Error::Crowded { .. } => "remove the cells that lie upon each other; a surface was perhaps meshed twice",
             Error::Untagged { .. } => {
                 "put every boundary edge into a group: in Gmsh add its curve to a `Physical Curve(\"name\") = {...};`"

@@ -4,15 +4,16 @@ use std::collections::{BTreeSet, HashMap};
 
 use super::{Error, FACE_CORNERS, Link, Mesh};
 
-/// Nodes closer than this part of the edges there are one place: far above the rounding of coordinates (1e-16 of
-/// the size of the mesh), far below any edge that is meant.
+/// Nodes that are closer than this part of the edges there count as one place. It is far above the rounding of coordinates
+/// (1e-16 of the size of the mesh), and far below any intended edge.
 const SAME_PLACE: f64 = 1e-6;
 
-/// For each cell what lies behind its faces 0..4: another cell, or a boundary group.
+/// For each cell the other side of its faces 0..4: another cell, or a boundary group.
 ///
-/// Two faces are neighbours where they have both nodes in common. Refused are edges of more than two cells, boundary
-/// edges in two groups or in none, nodes that hang on the inside of such an edge, and two nodes in one place, unless both
-/// stand on edges that all bear groups (two bodies in contact, a crack). An edge in a group between two cells is no boundary.
+/// Two faces are neighbours if they have both nodes in common. Errors are: an edge of more than two cells; a boundary
+/// edge in two groups or in no group; a node that hangs on the inside of a boundary edge without a group; and two nodes
+/// in one place, unless all boundary edges at both nodes have groups (two bodies in contact, a crack). An edge between
+/// two cells is no boundary, even if it has a group.
 pub fn links(mesh: &Mesh) -> Result<Vec<[Link; 4]>, Error> {
     mesh.consistent()?;
     let tags = tags(mesh)?;
@@ -51,8 +52,8 @@ pub fn links(mesh: &Mesh) -> Result<Vec<[Link; 4]>, Error> {
     }
 }
 
-/// For each cell the cells that share its faces 0..4, whatever the groups of its edges say; none at the edge of the body and
-/// where more than two cells meet.
+/// For each cell the cells that share its faces 0..4; the groups of edges do not matter. `None` at the edge of the
+/// body, and where more than two cells meet.
 pub fn neighbours(mesh: &Mesh) -> Vec<[Option<usize>; 4]> {
     let mut out = vec![[None; 4]; mesh.cells.len()];
     for same in sorted_faces(mesh).chunk_by(|a, b| a.nodes == b.nodes) {
@@ -92,7 +93,7 @@ fn ends(mesh: &Mesh, face: &Face) -> [[f64; 2]; 2] {
     mesh.face_nodes(face.cell, face.face).map(|node| mesh.nodes[node])
 }
 
-/// The group of each face that bears one.
+/// The group of each face that has one.
 fn tags(mesh: &Mesh) -> Result<HashMap<(usize, usize), usize>, Error> {
     let mut tags = HashMap::with_capacity(mesh.edges.len());
     for edge in &mesh.edges {
@@ -110,7 +111,7 @@ fn tags(mesh: &Mesh) -> Result<HashMap<(usize, usize), usize>, Error> {
     Ok(tags)
 }
 
-/// Refuses two nodes in one place, unless all boundary edges at both bear groups.
+/// An error if two nodes are in one place, unless all boundary edges at both have groups.
 fn no_duplicates(mesh: &Mesh, free: &[Face], untagged: &[Face]) -> Result<(), Error> {
     // Per node: a cell of it, the shortest edge there, and whether it may share its place.
     let mut owner = vec![usize::MAX; mesh.nodes.len()];
@@ -144,7 +145,7 @@ fn no_duplicates(mesh: &Mesh, free: &[Face], untagged: &[Face]) -> Result<(), Er
     }
 }
 
-/// All pairs of nodes that are `close`, which none further apart than `width / 2` may be.
+/// All pairs of nodes that are `close`. Nodes that are further apart than `width / 2` must not be `close`.
 ///
 /// Nodes are sorted by square buckets of that width, four times with buckets shifted by one half in x, in y and in
 /// both, so that each pair shares a bucket at least once.
@@ -171,14 +172,14 @@ fn close_pairs(
     pairs
 }
 
-/// Refuses boundary nodes on the inside of a boundary edge that bears no group.
+/// An error if a boundary node lies on the inside of a boundary edge without a group.
 fn no_hanging_nodes(mesh: &Mesh, free: &[Face], untagged: &[Face]) -> Result<(), Error> {
     let longest = untagged.iter().map(|f| length(mesh, f)).fold(0.0, f64::max);
     if longest == 0.0 {
         return Ok(());
     }
     let mut grid = Grid::new(longest, free.len());
-    // Each boundary node ends two boundary edges; once in the grid is enough.
+    // Each boundary node is the end of two boundary edges; it is entered into the grid once.
     let mut seen = vec![false; mesh.nodes.len()];
     for (index, face) in free.iter().enumerate() {
         for (end, node) in face.nodes.into_iter().enumerate() {

@@ -31,7 +31,7 @@ pub fn determinant(m: &[[f64; 2]; 2]) -> f64 {
     m[0][0] * m[1][1] - m[0][1] * m[1][0]
 }
 
-/// The inverse of a 2 x 2 matrix: of [`jacobian`] it is `k[beta][alpha]` = dxi_beta / dX_alpha.
+/// The inverse of a 2 x 2 matrix. The inverse of [`jacobian`] is `k[beta][alpha]` = dxi_beta / dX_alpha.
 pub fn inverse(m: &[[f64; 2]; 2]) -> [[f64; 2]; 2] {
     let det = determinant(m);
     [[m[1][1] / det, -m[0][1] / det], [-m[1][0] / det, m[0][0] / det]]
@@ -52,7 +52,7 @@ pub fn parent(corners: &Corners, x: [f64; 2]) -> Option<[f64; 2]> {
     };
     let (mut xi, mut rest) = ([0.5, 0.5], gap([0.5, 0.5]));
     let mut norm = rest[0].hypot(rest[1]);
-    // Quadratic convergence: 4 to 6 steps for ordinary cells; 50 is a ceiling for the thinnest ones.
+    // Quadratic convergence: 4 to 6 steps for ordinary cells; 50 is the limit for the thinnest cells.
     for _ in 0..50 {
         let k = inverse(&jacobian(corners, xi));
         let step = [k[0][0] * rest[0] + k[0][1] * rest[1], k[1][0] * rest[0] + k[1][1] * rest[1]];
@@ -71,7 +71,7 @@ pub fn parent(corners: &Corners, x: [f64; 2]) -> Option<[f64; 2]> {
                 break (next, next_rest, next_norm);
             }
             scale *= 0.5;
-            // No descent: either rounding is reached (the step is tiny), or the point has no image nearby.
+            // No descent: either the result is exact to rounding (the step is tiny), or the point has no image nearby.
             if scale < 1e-3 {
                 return (step[0].abs().max(step[1].abs()) < 1e-9).then_some(xi);
             }

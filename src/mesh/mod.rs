@@ -46,7 +46,7 @@ impl Mesh {
         self.cells[cell].map(|node| self.nodes[node])
     }
 
-    /// The number that messages give to a cell: that of the file, or its index from 1 where there is none.
+    /// The number of a cell in messages: its number in the file, or its index from 1 if the mesh comes from no file.
     pub fn number(&self, cell: usize) -> u64 {
         self.original.get(cell).copied().unwrap_or(cell as u64 + 1)
     }
@@ -84,7 +84,7 @@ pub struct BoundaryEdge {
 /// Corners (first, last) of local face f, in the direction of increasing parent coordinate.
 pub const FACE_CORNERS: [[usize; 2]; 4] = [[0, 3], [1, 2], [0, 1], [3, 2]];
 
-/// What lies on the other side of a face.
+/// The other side of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Link {
     /// Another cell's face; `flip` where the two run in opposite directions.

@@ -1,4 +1,4 @@
-//! What a mesh is made of: parts that share no edge, and groups of edges inside of the body.
+//! The parts of a mesh that share no edge, and the groups of edges inside the body.
 
 use std::collections::{HashMap, HashSet};
 
@@ -23,7 +23,7 @@ pub struct Part {
 }
 
 impl Mesh {
-    /// For each of [`Mesh::edge_groups`] its edges; one that is given from both of its cells counts once.
+    /// The edges of each group of [`Mesh::edge_groups`]. An edge that is given from both of its cells counts once.
     pub fn edge_counts(&self) -> Vec<EdgeCount> {
         let key = |cell: usize, face: usize| {
             let [a, b] = self.face_nodes(cell, face);
@@ -39,7 +39,7 @@ impl Mesh {
         for cell in 0..self.cells.len() {
             for face in 0..4 {
                 let nodes = key(cell, face);
-                // Most faces have no such node, and are not looked up.
+                // Most faces have no such node, so their lookup is skipped.
                 if nodes.into_iter().all(|node| of_group[node])
                     && let Some(count) = cells.get_mut(&nodes)
                 {

@@ -4,17 +4,17 @@ use std::collections::HashMap;
 
 use super::{Error, Link, Mesh, links};
 
-/// Ends further apart than this part of the edge, after the translation, do not match: far above the rounding of
-/// coordinates, far below any shift that is meant.
+/// Ends that are further apart than this part of the edge, after the translation, do not match. It is far above the rounding
+/// of coordinates, and far below any intended shift.
 const MATCH: f64 = 1e-6;
 
 /// [`links`] of a mesh whose boundary groups `pairs` (indices in [`Mesh::edge_groups`]) are one boundary each:
-/// every face of the first group is the neighbour of that face of the second which a translation takes it to.
+/// each face of the first group is translated; the face of the second group at that place is its neighbour.
 ///
 /// The translation takes the centre of the first group to that of the second. Cells may be their own neighbours.
 ///
 /// # Errors
-/// See [`links`]; groups of different numbers of edges; an edge without its match, by position.
+/// The errors of [`links`]; two groups with different numbers of edges; an edge without a match, with its position.
 pub fn periodic_links(mesh: &Mesh, pairs: &[[usize; 2]]) -> Result<Vec<[Link; 4]>, Error> {
     let mut links = links(mesh)?;
     for pair in pairs {
@@ -69,7 +69,7 @@ fn join(mesh: &Mesh, pair: [usize; 2], links: &mut [[Link; 4]]) -> Result<(), Er
     Ok(())
 }
 
-/// The edges of a group that are boundary.
+/// The edges of a group that lie on the boundary.
 fn edges(mesh: &Mesh, links: &[[Link; 4]], group: usize) -> Vec<Edge> {
     let faces = (0..links.len()).flat_map(|cell| (0..4).map(move |face| (cell, face)));
     let of_group = faces.filter(|&(cell, face)| links[cell][face] == Link::Boundary(group));
@@ -77,13 +77,13 @@ fn edges(mesh: &Mesh, links: &[[Link; 4]], group: usize) -> Vec<Edge> {
     of_group.map(|(cell, face)| Edge { cell, face, ends: ends(cell, face) }).collect()
 }
 
-/// The mean of the middles: the same for both groups up to the translation.
+/// The mean of the midpoints of the edges: it differs between the two groups by the translation only.
 fn centre(edges: &[Edge]) -> [f64; 2] {
     let count = edges.len().max(1) as f64;
     [0, 1].map(|k| edges.iter().map(|edge| edge.middle()[k]).sum::<f64>() / count)
 }
 
-/// Edges by the square buckets of their middles; each is taken once.
+/// Edges by the square buckets of their midpoints. Each edge is taken once.
 struct Partners<'a> {
     width: f64,
     buckets: HashMap<[i64; 2], Vec<&'a Edge>>,
@@ -108,7 +108,7 @@ impl<'a> Partners<'a> {
         let limit = MATCH * distance(ends[0], ends[1]);
         let near = |a: [[f64; 2]; 2], b: [[f64; 2]; 2]| (0..2).all(|k| distance(a[k], b[k]) <= limit);
         let [i, j] = self.bucket([0, 1].map(|k| 0.5 * (ends[0][k] + ends[1][k])));
-        // A middle may lie on the border of its bucket.
+        // A midpoint may lie on the border of its bucket.
         for key in (-1..=1).flat_map(|di| (-1..=1).map(move |dj| [i + di, j + dj])) {
             let Some(bucket) = self.buckets.get_mut(&key) else { continue };
             let fits = |edge: &&Edge| near(edge.ends, ends) || near([edge.ends[1], edge.ends[0]], ends);

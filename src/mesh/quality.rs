@@ -59,7 +59,7 @@ pub struct Quality {
 }
 
 impl Quality {
-    /// The quality of a mesh; of an empty one infinite and 0.
+    /// The quality of a mesh. For an empty mesh the figures are infinite and 0.
     pub fn of(mesh: &Mesh) -> Self {
         let mut quality = Quality {
             scaled_jacobian: (f64::INFINITY, 0),

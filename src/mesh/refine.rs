@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 impl Mesh {
     /// The mesh whose cells are k x k parts of these, cut along their parent coordinates (k >= 1): the same bilinear
-    /// geometry and the same groups. Part (i, j) of cell c has the index k^2 c + k j + i; cells are numbered anew from 1.
+    /// geometry and the same groups. Part (i, j) of cell c has the index k^2 c + k j + i. The new cells are numbered from 1.
     pub fn refined(&self, k: usize) -> Mesh {
         if k <= 1 {
             return self.clone();
@@ -40,14 +40,14 @@ impl Mesh {
 struct Nodes<'a> {
     mesh: &'a Mesh,
     k: usize,
-    /// By node of the mesh.
+    /// The new node at each node of the mesh.
     of_mesh: HashMap<usize, usize>,
-    /// By the two nodes of an edge (lower index first) and the step from the first.
+    /// The new nodes on edges, by the two nodes of the edge (lower index first) and the number of steps from the first.
     on_edges: HashMap<([usize; 2], usize), usize>,
 }
 
 impl Nodes<'_> {
-    /// The node at (i, j) / k of a cell; made where it is new.
+    /// The node at (i, j) / k of a cell. It is made if it does not exist yet.
     fn find(&mut self, cell: usize, [i, j]: [usize; 2], out: &mut Mesh) -> usize {
         let k = self.k;
         let corners = self.mesh.corners(cell);
@@ -71,7 +71,7 @@ impl Nodes<'_> {
         let along = if face < 2 { j } else { i };
         let (ends, step) = if first < last { ([first, last], along) } else { ([last, first], k - along) };
         *self.on_edges.entry((ends, step)).or_insert_with(|| {
-            // From the shared ends, not from the cell: both sides see the same bits.
+            // Computed from the shared ends, not from the cell: both sides get the same bits.
             let [a, b] = ends.map(|node| self.mesh.nodes[node]);
             let s = step as f64 / k as f64;
             new([0, 1].map(|axis| a[axis] + s * (b[axis] - a[axis])))

@@ -9,13 +9,13 @@ use super::{BoundaryEdge, Error, Mesh};
 pub fn rectangle(size: [f64; 2], cells: [usize; 2]) -> Result<Mesh, Error> {
     let [nx, ny] = cells;
     let extent = size.iter().all(|s| s.is_finite() && *s > 0.0);
-    // 2^32 cells would need more memory than any node has; the product must not overflow either.
+    // 2^32 cells need more memory than any machine has, and the product must not overflow.
     let count = nx.checked_mul(ny).filter(|n| (1..1 << 32).contains(n));
     let (true, Some(count)) = (extent, count) else {
         return Err(Error::Rectangle { size, cells });
     };
     let node = |ix: usize, iy: usize| ix + (nx + 1) * iy;
-    // The fraction first: it is exactly 1 at the last node, so that the last node lies exactly at the size.
+    // First the fraction: it is exactly 1 at the last node, so that this node lies exactly at the size.
     let at = |i: usize, axis: usize| size[axis] * (i as f64 / cells[axis] as f64);
     let edge = |cell: usize, face: usize| BoundaryEdge { cell, face, group: face };
     let edges = (0..ny)

@@ -1,4 +1,4 @@
-//! From a snapshot to what other programs show: the grid as high-order quadrilaterals, and the material points.
+//! From a snapshot to the data for other programs: the grid as high-order quadrilaterals, and the material points.
 
 use super::{Field, Solution};
 use crate::cloud::Cloud;
@@ -6,8 +6,8 @@ use crate::io::grid::{self, HighOrderGrid, Kind, PointCloud, lagrange_quad_nodes
 use crate::mesh::{Mesh, map};
 use crate::operators::Certificate;
 
-/// The grid with its fields at the Lagrange nodes of each cell, discontinuous between cells; stresses are the law's at
-/// the polynomial of F.
+/// The grid with its fields at the Lagrange nodes of each cell, discontinuous between cells. Stresses come from the
+/// law, at the value of the polynomial F.
 pub fn grid(mesh: &Mesh, solution: &Solution, fields: &[Field]) -> HighOrderGrid {
     let degree = solution.basis.len() - 1;
     let mut out = HighOrderGrid::of_mesh(mesh, degree);
@@ -21,7 +21,8 @@ pub fn grid(mesh: &Mesh, solution: &Solution, fields: &[Field]) -> HighOrderGrid
 
 /// The material points as vertices, with their fields and the number of their cell.
 ///
-/// `virtual_points` says which of them stand on Gauss nodes because their cell cannot carry the degree; empty: none.
+/// `virtual_points` marks the points that stand on Gauss nodes because the points of their cell cannot carry the
+/// degree. Empty: none.
 pub fn points(
     mesh: &Mesh,
     cloud: &Cloud,
@@ -56,8 +57,8 @@ fn values(field: Field, solution: &Solution, points: &[(usize, super::Point)]) -
     grid::Field::new(field.name(), field.kind(), values)
 }
 
-/// What each cell can carry, as cell fields: the certificate (class 0 lattice, 1 dense, 2 deficient, 3 nodes; dt in s at the
-/// initial state), the number in the mesh file, and the law.
+/// Cell fields: the certificate of each cell (what its points can carry; class 0 lattice, 1 dense, 2 deficient, 3
+/// nodes; dt in s at the initial state), the number in the mesh file, and the law.
 pub fn cell_fields(mesh: &Mesh, certificates: &[Certificate], material: &[usize]) -> Vec<grid::Field> {
     let scalar = |name: &str, value: &dyn Fn(usize) -> f64| {
         grid::Field::new(name, Kind::Scalar, (0..mesh.cells.len()).map(value).collect())

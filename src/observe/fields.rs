@@ -30,12 +30,13 @@ names! {
 }
 
 impl Field {
-    /// The field of a name.
+    /// The field with this name.
     pub fn of(name: &str) -> Option<Field> {
         Self::NAMES.iter().find(|(known, _)| *known == name).map(|(_, field)| *field)
     }
 
-    /// The internal variables that it shows, each with its value where a law does not have it; none for other fields.
+    /// The internal variables that the field shows, each with the value for laws that do not have it. Empty for other
+    /// fields.
     fn variables(self) -> &'static [(&'static str, f64)] {
         match self {
             Field::PlasticStrain => &[("plastic_strain", 0.0)],
@@ -49,12 +50,12 @@ impl Field {
         }
     }
 
-    /// Whether it shows internal variables.
+    /// Whether the field shows internal variables.
     pub fn is_internal(self) -> bool {
         !self.variables().is_empty()
     }
 
-    /// Whether a body of these laws has it: internal variables need a law that has them.
+    /// Whether a body of these laws has the field: internal variables need a law that has them.
     pub fn is_of(self, laws: &[Law]) -> bool {
         let has = |name: &str| laws.iter().any(|law| law.internal().contains(&name));
         self.variables().iter().all(|(name, _)| has(name))
@@ -76,7 +77,7 @@ impl Field {
         self.suffixes().iter().map(move |suffix| format!("{}{suffix}", self.name()))
     }
 
-    /// How many directions it has: what an export makes of it.
+    /// Whether an export writes the field as a scalar, vector or tensor.
     pub fn kind(self) -> Kind {
         match self {
             Field::Velocity | Field::Displacement => Kind::Vector,
@@ -85,7 +86,7 @@ impl Field {
         }
     }
 
-    /// Appends it as an export has it: vectors in space, tensors row by row with their third direction.
+    /// Appends the value of the field for an export: vectors in space, tensors row by row with their third direction.
     pub fn push_spatial(self, law: &Law, at: &Point, out: &mut Vec<f64>) {
         let mut plane = Vec::with_capacity(5);
         self.push(law, at, &mut plane);
@@ -100,7 +101,7 @@ impl Field {
         }
     }
 
-    /// Appends its components at a point.
+    /// Appends the components of the field at a point.
     pub fn push(self, law: &Law, at: &Point, out: &mut Vec<f64>) {
         match self {
             Field::Velocity => out.extend(at.velocity),
@@ -123,7 +124,7 @@ impl Field {
     }
 }
 
-/// Row by row with the third direction of plane strain.
+/// A tensor row by row, with the third direction of plane strain.
 fn spatial(t: [f64; 4], t33: f64) -> [f64; 9] {
     [t[0], t[1], 0.0, t[2], t[3], 0.0, 0.0, 0.0, t33]
 }

@@ -1,4 +1,4 @@
-//! `ledger.csv`: energy, momentum and health over time, and where energy came from and went to.
+//! `ledger.csv`: energy, momentum, smallest J and largest speed over time, and the balance of energy.
 
 use super::{Observer, Schedule, View};
 use crate::error::Error;
@@ -20,16 +20,16 @@ const COLUMNS: [&str; 11] = [
     "c_max",
 ];
 
-/// Behind those, where the displacement is known: what F and the shape differ by, [`Totals::max_drift`].
+/// The next column, if the displacement is known: the difference between F and the shape, [`Totals::max_drift`].
 const DRIFT: &str = "max_drift";
 
-/// Behind those, where a law has memory: what plastic flow has dissipated since the material was virgin.
+/// The next column, if a law has memory: the energy that plastic flow has dissipated since the material was virgin.
 const PLASTIC: &str = "plastic_dissipation";
 
-/// Behind all others, where a scene has regrids: what they have lost since the start of the run.
+/// The last column, if the scene changes its grid: the energy that these changes have lost since the start of the run.
 const REGRIDS: &str = "regrid_dissipation";
 
-/// Columns of the balance, behind the others; all but the last cumulated since the start of the run.
+/// The columns of the balance, after those before. All but the last are cumulated since the start of the run.
 const BALANCE: [&str; 7] = [
     "boundary_work",
     "source_work",
@@ -40,20 +40,20 @@ const BALANCE: [&str; 7] = [
     "angular_momentum",
 ];
 
-/// What a ledger has beside energy, momentum and health.
+/// The further columns of a ledger.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Contents {
-    /// What F and the shape differ by.
+    /// The difference between F and the shape.
     pub drift: bool,
-    /// What plastic flow has dissipated.
+    /// The energy that plastic flow has dissipated.
     pub plastic: bool,
     /// The columns of [`Balance`].
     pub balance: bool,
-    /// With those, what regrids have lost.
+    /// With the balance: the energy that changes of grid have lost.
     pub regrids: bool,
 }
 
-/// Writes a row each time it looks. Energies in J, momenta in kg m/s and kg m^2/s, per metre of thickness.
+/// Writes a row each time it observes. Energies in J, momenta in kg m/s and kg m^2/s, per metre of thickness.
 pub struct Ledger {
     schedule: Schedule,
     contents: Contents,
@@ -64,7 +64,7 @@ impl Ledger {
     /// Starts `path` with its header.
     ///
     /// # Errors
-    /// Where the file cannot be made.
+    /// The file cannot be created.
     pub fn create(path: &Path, schedule: Schedule, contents: Contents) -> Result<Self, Error> {
         let Contents { drift, plastic, balance, regrids } = contents;
         let mut columns = COLUMNS.to_vec();
@@ -120,7 +120,7 @@ impl Observer for Ledger {
             row.extend(self.contents.regrids.then_some(balance.regrid_dissipation));
         }
         self.table.push(&row)?;
-        // Row by row on the disk: a run that dies leaves its history.
+        // Each row is written to the disk at once, so that a killed run leaves its history.
         self.table.flush()
     }
 }

@@ -7,12 +7,12 @@ use crate::io::csv::Table;
 use crate::mesh::Mesh;
 use std::path::Path;
 
-/// What a line samples.
+/// A line of samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples {
     /// First and last point, reference coordinates in m.
     pub ends: [[f64; 2]; 2],
-    /// Their number, at least 2: s_i = i L / (count - 1).
+    /// The number of samples, at least 2: s_i = i L / (count - 1).
     pub count: usize,
     /// The fields.
     pub fields: Vec<Field>,
@@ -39,7 +39,7 @@ impl Line {
     /// Locates the samples and starts `path` with its header.
     ///
     /// # Errors
-    /// A sample outside of the mesh; a file that cannot be made.
+    /// A sample lies outside the mesh, or the file cannot be created.
     pub fn create(
         path: &Path,
         mesh: &Mesh,
@@ -63,20 +63,20 @@ pub struct Outside {
     pub sample: usize,
     /// The number of samples.
     pub count: usize,
-    /// Where it lies.
+    /// The position of the sample.
     pub x: [f64; 2],
 }
 
 impl Outside {
-    /// What would be right.
+    /// How to correct it.
     pub const REMEDY: &str = "choose `from` and `to` inside of the body in its initial configuration";
 }
 
 impl Samples {
-    /// Whether the whole line lies in the mesh.
+    /// Checks that the whole line lies in the mesh.
     ///
     /// # Errors
-    /// The first sample that does not.
+    /// The first sample outside the mesh.
     pub fn check(&self, mesh: &Mesh) -> Result<(), Outside> {
         self.locate(mesh).map(|_| ())
     }

@@ -1,5 +1,5 @@
-//! What a run shows of itself. When (a [`Schedule`]) is apart from what (an [`Observer`]); observing changes no bit of
-//! the run. An empty list of observers costs nothing.
+//! Observers of a run: they write tables, snapshots and lines. When they observe ([`Schedule`]) is separate from what
+//! they do ([`Observer`]). Observing changes no bit of the run. An empty list of observers costs nothing.
 
 pub mod export;
 pub mod fields;
@@ -33,13 +33,13 @@ pub struct View<'a> {
     pub state: &'a State,
     /// Its wave speeds and min J.
     pub survey: &'a Survey,
-    /// The balance of energy since the start; none where no observer wants it.
+    /// The balance of energy since the start; `None` if no observer needs it.
     pub balance: Option<&'a Balance>,
     /// The step that follows, s; 0 at the end of the run.
     pub dt: f64,
 }
 
-/// The grid that the run goes on with.
+/// The grid on which the run continues.
 #[derive(Clone, Copy)]
 pub struct NewGrid<'a> {
     /// The mesh.
@@ -50,32 +50,33 @@ pub struct NewGrid<'a> {
     pub files: &'a GridFiles,
 }
 
-/// Something that looks at the state at certain times.
+/// An observer: it gets the state at certain times.
 pub trait Observer {
-    /// Whether the run must meter its balance of energy for it.
+    /// Whether this observer needs the balance of energy.
     fn wants_balance(&self) -> bool {
         false
     }
 
-    /// When it looks.
+    /// The times at which it observes.
     fn schedule(&mut self) -> &mut Schedule;
 
-    /// Looks.
+    /// Observes the state.
     ///
     /// # Errors
-    /// Where its output cannot be written.
+    /// The output cannot be written.
     fn observe(&mut self, view: &View) -> Result<(), Error>;
 
-    /// The body has made energy out of nothing: said once, while the run goes on. Nothing to do for those that say nothing.
+    /// Called once, during the run, if the method has made energy out of nothing. By default it does nothing.
     fn energy_made(&mut self, _: &EnergyMade) {}
 
-    /// Something worth a line, such as what a regrid did. Nothing to do for those that say nothing.
+    /// Something that deserves a line, such as what a regrid did. By default it does nothing.
     fn notice(&mut self, _: &str) {}
 
-    /// The run goes on with another grid. Nothing to do for those that keep nothing of the old one.
+    /// Called when the run continues on another grid. By default it does nothing; observers that keep data of the old
+    /// grid need it.
     ///
     /// # Errors
-    /// A grid on which it cannot go on.
+    /// The observer cannot continue on this grid.
     fn regrid(&mut self, _: &NewGrid) -> Result<(), Error> {
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! When an observer looks.
+//! The times at which an observer observes.
 
 /// The times that were asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,7 +11,7 @@ pub enum When {
     EverySteps(usize),
 }
 
-/// Times that were asked for, and how far they have been served.
+/// Times that were asked for, and how many of them have passed.
 ///
 /// "At t" is the end of the step that is nearest to t, so that observing changes no bit of the run; with exact times
 /// the steps are cut to end there. Times of a list that lie after the end of the run are nearest to its last state.
@@ -20,20 +20,21 @@ pub struct Schedule {
     when: When,
     exact: bool,
     with_end: bool,
-    /// How many of the times asked for have been served.
+    /// How many of these times have passed.
     served: usize,
 }
 
-/// Two times are the same within this share of them: some roundings of sums of steps and of multiples of an interval.
+/// Two times count as equal within this share of them: it allows for rounding in sums of steps and in multiples of an
+/// interval.
 const SAME: f64 = 1e-12;
 
 impl Schedule {
-    /// A schedule from its start.
+    /// A schedule, before its first time.
     pub fn new(when: When, exact: bool) -> Self {
         Self { when, exact, with_end: false, served: 0 }
     }
 
-    /// Looks at the end of the run too.
+    /// The same schedule, which also observes at the end of the run.
     pub fn with_end(self) -> Self {
         Self { with_end: true, ..self }
     }
@@ -61,7 +62,7 @@ impl Schedule {
         }
     }
 
-    /// How many of the times asked for lie up to a step or a time.
+    /// How many of these times are at or before a step or a time.
     fn asked(&self, step: usize, time: f64) -> usize {
         let time = time * (1.0 + SAME);
         match &self.when {

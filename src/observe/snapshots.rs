@@ -15,7 +15,7 @@ pub struct Snapshots {
 }
 
 impl Snapshots {
-    /// Snapshots into a folder that exists.
+    /// An observer that writes snapshots into a folder. The folder must exist.
     pub fn new(folder: &Path, schedule: Schedule) -> Self {
         Self { schedule, folder: folder.to_owned(), grid: GridFiles::default() }
     }
@@ -36,10 +36,10 @@ impl Observer for Snapshots {
     }
 }
 
-/// Writes a state into a folder of snapshots; the path of the file.
+/// Writes a state into a folder of snapshots. Returns the path of the file.
 ///
 /// # Errors
-/// Where the file cannot be written.
+/// The file cannot be written.
 pub fn write(scheme: &Scheme, state: &State, grid: &GridFiles, folder: &Path) -> Result<PathBuf, Error> {
     let path = snapshot::path(folder, state.step);
     Snapshot { grid: grid.clone(), ..take(scheme, state) }.write(&path)?;

@@ -22,25 +22,26 @@ pub struct Point {
 }
 
 impl Point {
-    /// What a law says there, from those internal variables.
+    /// The response of a law at this point, from these internal variables.
     pub fn response(&self, law: &Law) -> Response {
         law.response(self.deformation, &self.internal)
     }
 }
 
-/// Internal variables of all cells, and where they stand.
+/// Internal variables of all cells, and the points to which they belong.
 #[derive(Debug, Clone, Default, PartialEq)]
 struct Memory {
     /// The points where the law is evaluated between steps.
     places: Cloud,
     /// The first number of each cell in `values`.
     first: Vec<usize>,
-    /// As [`Scheme::internal_of`] has them.
+    /// The values, in the order of [`Scheme::internal_of`].
     values: Vec<f64>,
 }
 
 impl Memory {
-    /// Of cells with these laws; none where no law has memory. What is missing in `values` is virgin.
+    /// The internal variables of cells with these laws; `None` if no law has memory. Points for which `values` is too
+    /// short are virgin.
     fn new(laws: &[Law], material: &[usize], places: impl FnOnce() -> Cloud, values: Vec<f64>) -> Option<Self> {
         if laws.iter().all(|law| law.internal().is_empty()) {
             return None;
@@ -74,16 +75,16 @@ pub struct Solution<'a> {
     pub laws: &'a [Law],
     /// The law of each cell.
     pub material: &'a [usize],
-    /// 6, or 8 with displacement.
+    /// The number of components: 6, or 8 with displacement.
     pub components: usize,
     /// `[cell][component][node]`.
     pub u: Vec<f64>,
-    /// None where no law has any.
+    /// Internal variables; `None` if no law has memory.
     memory: Option<Memory>,
 }
 
 impl<'a> Solution<'a> {
-    /// That of a state; `material` gives the law of each cell.
+    /// The solution of a state; `material` gives the law of each cell.
     pub fn of_state(scheme: &'a Scheme, state: &State, material: &'a [usize]) -> Self {
         let operators = &scheme.operators;
         Self {
@@ -96,7 +97,7 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// That of a snapshot; `places` are the points where the law is evaluated between steps ([`Scheme::places`]).
+    /// The solution of a snapshot; `places` are the points where the law is evaluated between steps ([`Scheme::places`]).
     pub fn of_snapshot(
         snapshot: &Snapshot,
         basis: &'a Lagrange,

@@ -7,9 +7,10 @@ use crate::mesh::Link;
 
 /// The blocks; the last one of a law is padded with its last cell.
 ///
-/// A block holds eight cells of a law that follow each other, in the order of the mesh or in that of Cuthill and McKee,
-/// whichever has neighbours nearer; so stand the blocks themselves. What is under way in a step is then a small part of the
-/// mesh. Cells keep their numbers everywhere else, and bits do not depend on it.
+/// A block holds eight cells of one law that follow each other in an order: that of the mesh or that of Cuthill and
+/// McKee, whichever has neighbours nearer to each other. The blocks follow each other in such an order too. So the data
+/// that a step has begun and not finished belongs to a small part of the mesh. Everywhere else cells keep their
+/// numbers, and the bits of a run do not depend on the order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Blocks {
     /// The cell of each lane (padding repeats the last real one).
@@ -20,11 +21,11 @@ pub struct Blocks {
     pub material: Vec<usize>,
     /// Block and lane of each cell.
     pub slot: Vec<(usize, usize)>,
-    /// For each block, local face and lane the other side.
+    /// The other side of each block, local face and lane.
     pub neighbours: Vec<[[Neighbour; LANES]; 4]>,
-    /// For each block and local face how to get at the other side.
+    /// For each block and local face, how its other side is read.
     pub plan: Vec<[Plan; 4]>,
-    /// Other sides that lie anywhere; lanes at a boundary and padding see themselves.
+    /// Other sides at different places. The other side of a lane at a boundary, or of a padding lane, is this lane itself.
     pub gathered: Vec<Gathered>,
 }
 
@@ -36,7 +37,7 @@ impl Blocks {
         if own.gathered.is_empty() {
             return own;
         }
-        // Rows of a structured mesh lie as they should, however large its bandwidth is.
+        // The rows of a structured mesh are a good order, even if its bandwidth is large.
         let other = Self::in_order(material, links, order::cuthill_mckee(&graph));
         if 10 * other.gathered.len() < 9 * own.gathered.len() || own.reach() > 2 * other.reach() { other } else { own }
     }
@@ -59,7 +60,7 @@ impl Blocks {
         Self::of_lists(material, links, &lists, &order::narrow(&graph))
     }
 
-    /// How far the farthest neighbour of a block is, for the middle one of all blocks, as in [`order::narrow`].
+    /// The distance of a block from its farthest neighbour, the median over all blocks, as in [`order::narrow`].
     fn reach(&self) -> usize {
         let of = |(block, neighbours): (usize, &[[Neighbour; LANES]; 4])| {
             let far = neighbours.iter().flatten().map(|neighbour| match neighbour {
@@ -102,7 +103,7 @@ impl Blocks {
         let lanes = self.neighbours[block][face];
         let special = lanes.iter().any(|n| matches!(n, Neighbour::Boundary(_) | Neighbour::Interface(..)));
         let own = |lane: usize| Across { face: 4 * block + face, lane, flip: false };
-        // Padding stays at rest only where it sees itself: a block that has it is never aligned.
+        // A padding lane stays at rest only if its other side is the lane itself. So a block with padding is never aligned.
         let (mut across, mut source, mut aligned) = ([own(0); LANES], None, self.count[block] == LANES);
         for (lane, neighbour) in lanes.iter().enumerate() {
             match *neighbour {

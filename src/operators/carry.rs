@@ -1,13 +1,14 @@
 //! Cells whose points cannot carry Q_N, and the virtual points that take their place (design section 8).
 //!
-//! Lowering the order in such a cell, or a fit of minimum norm, is unstable. With the predictor's points on the Gauss nodes
-//! the cell is one of ADER-DGFEM: order and stability stay, and grid unknowns are the master copy anyway. Internal
-//! variables come from the nearest points, and are never interpolated.
+//! A lower order in such a cell, or a fit of minimum norm, is unstable. With the predictor's points on the Gauss nodes
+//! the cell is computed as in ADER-DGFEM: order and stability stay, and nothing is lost, because the master copy of the
+//! unknowns is on the grid. Internal variables come from the nearest points, and are never interpolated.
 //!
-//! Cells of a law with memory sample on their Gauss nodes, too, wherever their points stand, unless the scene keeps the
-//! histories at the points. P is sampled at points and interpolated, and the power of the interpolant against grad v is the
-//! rate of the points' energy only where points and nodes are the same: away from them plastic flow, whose P is rough from
-//! point to point, makes energy (a Taylor bar 4 to 80 % and more, with histories at the nodes none).
+//! Cells of a law with memory also sample on their Gauss nodes, wherever their points are, unless the scene keeps the
+//! histories at the points. The reason: P is sampled at the points and interpolated. The power of the interpolated P
+//! against grad v is the rate of the energy of the points only if points and nodes are the same. If they differ,
+//! plastic flow makes energy, because its P is rough from point to point (a Taylor bar 4 to 80 % and more, with
+//! histories at the nodes none).
 
 use super::certificate::{Certificate, Class, of_points};
 use super::{Line, Sampling};
@@ -18,15 +19,16 @@ use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
-/// What the points of a cell may amplify before they are replaced.
+/// The limits for the points of a cell. Beyond them virtual points replace the points.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Limits {
-    /// Largest Lebesgue constant over face points and Gauss nodes: what errors of sampling P(F) are multiplied by.
+    /// Largest Lebesgue constant over face points and Gauss nodes: the factor by which the fit can amplify errors of P
+    /// at the points.
     pub lebesgue: f64,
-    /// Largest condition number of the fit: what rounding is multiplied by.
+    /// Largest condition number of the fit: the factor by which it can amplify rounding.
     pub condition: f64,
-    /// Whether the limits hold for lattices, too. A lattice is a choice, not an accident: unless it is asked for, only a
-    /// rank that is too small replaces one.
+    /// Whether the limits hold for lattices too. The user has chosen a lattice deliberately. So, unless the scene gives
+    /// limits, a lattice is replaced only if its rank is too small.
     pub lattices: bool,
 }
 
@@ -35,8 +37,9 @@ impl Limits {
     /// 300, the layout of the paper 1.3e3 for N = 6.
     pub const CONDITION: f64 = 1e5;
 
-    /// Lebesgue constants for N = 0..6: 10, 30, 60, 150 for N = 1..4 by the design, measured on the manufactured problem;
-    /// beyond by the factor 3.3 that those of midpoints grow by (50.6, 161, 539 for N = 4, 5, 6). A jitter of .2 stays below.
+    /// Lebesgue constants for N = 0..6: 10, 30, 60, 150 for N = 1..4 by the design, measured on the manufactured
+    /// problem; above N = 4 by the factor 3.3, by which those of midpoints grow (50.6, 161, 539 for N = 4, 5, 6). A
+    /// jitter of .2 stays below.
     pub const LEBESGUE: [f64; 7] = [10.0, 10.0, 30.0, 60.0, 150.0, 500.0, 1650.0];
 
     /// The limits of degree N.
@@ -45,7 +48,7 @@ impl Limits {
         Self { lebesgue, condition: Self::CONDITION, lattices: false }
     }
 
-    /// Why a cell cannot carry Q_N with (N+1)^2 = `needed`; none where it can.
+    /// The reason why a cell cannot carry Q_N with (N+1)^2 = `needed`; `None` if it can.
     pub fn cause(&self, cell: &Certificate, needed: usize) -> Option<Cause> {
         match () {
             _ if cell.points < needed => Some(Cause::Few),
@@ -58,7 +61,7 @@ impl Limits {
     }
 }
 
-/// Why the scheme does not sample at the points of a cell.
+/// The reason why the scheme does not sample at the points of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Cause {
     /// There are fewer than (N+1)^2.
@@ -78,9 +81,9 @@ pub enum Cause {
 pub struct Deficient {
     /// The cell.
     pub cell: usize,
-    /// Why.
+    /// The reason.
     pub cause: Cause,
-    /// The figures of the points that were given.
+    /// The certificate of the given points.
     pub given: Certificate,
 }
 
@@ -89,12 +92,12 @@ pub struct Deficient {
 pub struct Carried {
     /// Its points.
     pub cloud: Cloud,
-    /// For each of its points that of the given cloud that it is, or that is nearest in X among those of its group of
-    /// cells (of those as near as each other the first).
+    /// For each of its points a point of the given cloud: the same point, or the nearest in X in its group of cells
+    /// (the first of several that are equally near).
     pub source: Vec<usize>,
-    /// Whether it is that point itself; else it is virtual.
+    /// For each of its points, whether it is that point itself. If not, it is virtual.
     pub kept: Vec<bool>,
-    /// The cells with virtual points, rising, and why.
+    /// The cells with virtual points, in rising order, with the reason.
     pub deficient: Vec<Deficient>,
     /// The certificate of each cell on what the scheme samples there, without dt.
     pub certificates: Vec<Certificate>,
@@ -106,11 +109,11 @@ pub fn stand_on_nodes(nodes: &[[f64; 2]], xi: &[[f64; 2]]) -> bool {
     xi.len() == nodes.len() && xi.iter().zip(nodes).all(near)
 }
 
-/// Puts virtual points on the Gauss nodes of all cells whose points cannot carry Q_N, and of those that `memory` names (their
-/// law has memory; empty: none), where these get the nodes to the bit.
+/// Puts virtual points on the Gauss nodes of all cells whose points cannot carry Q_N, and of all cells that `memory`
+/// marks (their law has memory; an empty list marks no cell). These points are the nodes to the bit.
 ///
 /// # Errors
-/// A deficient cell in a group of cells without any point: nothing says what its internal variables are.
+/// A deficient cell in a group of cells without any point: its internal variables are unknown.
 pub fn carry(mesh: &Mesh, line: &Line, cloud: &Cloud, limits: &Limits, memory: &[bool]) -> Result<Carried, Error> {
     let nodes = line.nodes();
     let (class, examples) = Sampling::Cloud(cloud).classes(&nodes, mesh.cells.len());
@@ -166,10 +169,10 @@ pub fn carry(mesh: &Mesh, line: &Line, cloud: &Cloud, limits: &Limits, memory: &
 /// A point of the given cloud, with its number.
 pub(super) type Tree = RTree<GeomWithData<[f64; 2], usize>>;
 
-/// The points of each group of cells that has any of the `poor` cells.
+/// For each group of cells that has one of the `poor` cells (their points cannot carry Q_N), the points of the group.
 ///
 /// # Errors
-/// Such a group without any point.
+/// One of these groups has no point.
 pub(super) fn trees(mesh: &Mesh, cloud: &Cloud, poor: &[usize]) -> Result<Vec<Option<Tree>>, Error> {
     let mut asked = vec![None; mesh.groups.len()];
     for &cell in poor {
@@ -190,14 +193,14 @@ pub(super) fn trees(mesh: &Mesh, cloud: &Cloud, poor: &[usize]) -> Result<Vec<Op
                 mesh.groups[group],
                 mesh.number(cell)
             ),
-            "put points into each group of cells: what is known of its material is known at points",
+            "put points into each group of cells: its internal variables come from its points",
         )),
         Some(_) => Ok(Some(RTree::bulk_load(points))),
     };
     points.into_iter().enumerate().map(tree).collect()
 }
 
-/// The number of the nearest point; of several the first.
+/// The number of the nearest point; the first of several that are equally near.
 fn nearest(tree: &Tree, x: [f64; 2]) -> usize {
     tree.nearest_neighbors(&x).into_iter().map(|point| point.data).min().unwrap_or(0)
 }

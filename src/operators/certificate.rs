@@ -1,4 +1,4 @@
-//! What each cell can carry, known before the first step.
+//! The certificate of a cell: what its points can carry. It is known before the first step.
 
 use super::{Line, PointMatrices, Sampling};
 use crate::basis::MovingLeastSquares;
@@ -13,27 +13,29 @@ names! {
         Lattice = "lattice",
         /// Any other cloud: dense matrices.
         Dense = "dense",
-        /// Points that cannot carry Q_N: virtual ones stand on the Gauss nodes in their place, see [`super::carry`].
+        /// Points that cannot carry Q_N: virtual ones stand on the Gauss nodes in their place, see [`carry`](mod@super::carry).
         Deficient = "deficient",
         /// The Gauss nodes themselves: methods without points, and laws with memory.
         Nodes = "nodes",
     }
 }
 
-/// The certificate of a cell: what the scheme samples on, and how well.
+/// The certificate of a cell: the points on which the scheme samples, and how well they determine a polynomial of Q_N.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certificate {
-    /// How its points are treated.
+    /// How the points of the cell are treated.
     pub class: Class,
-    /// N_p.
+    /// N_p, the number of points.
     pub points: usize,
     /// Numerical rank of the fit; (N+1)^2 where the cell carries Q_N.
     pub rank: usize,
     /// Condition number of the fit.
     pub condition: f64,
-    /// Face Lebesgue constant: max over face points of sum_p |chi_p|; infinite where the rank is too small.
+    /// Face Lebesgue constant, the largest factor by which the fit can amplify errors of the point values at the faces:
+    /// max over face points of sum_p |chi_p|; infinite if the rank is too small.
     pub lebesgue: f64,
-    /// The same over the Gauss nodes. (Points near the faces alone do not see functions that vanish there.)
+    /// The Lebesgue constant over the Gauss nodes. (If all points are near the faces, a function that vanishes at the
+    /// faces is nearly zero at all of them, and only this constant is large.)
     pub inside: f64,
     /// h_e, m: the time step is proportional to it.
     pub h: f64,
@@ -44,7 +46,7 @@ pub struct Certificate {
 /// Certificates of all cells, in the order of the mesh, without dt.
 ///
 /// # Errors
-/// As for the fit itself.
+/// The errors of the fit ([`MovingLeastSquares::new`]).
 pub fn certify(mesh: &Mesh, line: &Line, sampling: Sampling) -> Result<Vec<Certificate>, Error> {
     let nodes = line.nodes();
     let (class, examples) = sampling.classes(&nodes, mesh.cells.len());
@@ -59,10 +61,10 @@ pub fn certify(mesh: &Mesh, line: &Line, sampling: Sampling) -> Result<Vec<Certi
         .collect())
 }
 
-/// The certificate of a cell with these points, but for its shape (h = 0, dt = NaN).
+/// The certificate of a cell with these points, without its shape (h = 0, dt = NaN).
 ///
 /// # Errors
-/// As for the fit itself.
+/// The errors of the fit ([`MovingLeastSquares::new`]).
 pub fn of_points(line: &Line, xi: &[[f64; 2]]) -> Result<Certificate, Error> {
     let fit = MovingLeastSquares::new(line.m - 1, xi)?;
     let along = &line.basis.nodes;

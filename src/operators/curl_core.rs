@@ -1,8 +1,9 @@
-//! Pi of cells that differ: by the curl in parent coordinates, which is one for all cells, and a small matrix of the cell.
+//! Pi of cells of different shapes, by the curl in parent coordinates, which is the same for all cells, and a small
+//! matrix of each cell.
 //!
 //! The components g_k = F_ia dX_a/dxi_k of a gradient are the derivatives of a function in parent coordinates, whatever the
 //! cell is. With K those functionals of g at the nodes that vanish on the gradients of Q_N, and J the Jacobian matrices
-//! dX/dxi at the nodes, F - Pi F = W^-1 J K^T Z K J^T F for a symmetric Z of (N+1)^2 + 1 rows: half of it are a third of the
+//! dX/dxi at the nodes, F - Pi F = W^-1 J K^T Z K J^T F for a symmetric Z of (N+1)^2 + 1 rows. Half of Z has a third of the
 //! numbers of C, see [`super::CurlFree`], and K is a product of 1D tables.
 
 use super::{Line, Matrix};
@@ -32,13 +33,14 @@ pub const fn functionals(m: usize) -> usize {
     m * m + 1
 }
 
-/// The numbers of Z: of two rows, where there are two, side by side those left of the diagonal, then the diagonal's.
+/// The packed numbers of Z. Rows are taken in pairs: first the entries left of the diagonal, the two rows side by side,
+/// then the diagonal.
 pub const fn numbers(m: usize) -> usize {
     functionals(m) * (functionals(m) + 1) / 2
 }
 
 impl Curl {
-    /// Of the nodes of a line.
+    /// The tables for the nodes of a line.
     pub fn new(line: &Line) -> Self {
         let (m, basis) = (line.m, &line.basis);
         let degree = m - 1;

@@ -9,12 +9,12 @@ use crate::mesh::{Mesh, map};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-/// Pivots below this share of the largest are rounding: the set of columns is rank-deficient by construction,
+/// Pivots below this share of the largest count as rounding. The set of columns is rank-deficient by construction,
 /// with ranks 5, 10, 17 of 8, 18, 32 on affine cells and 6, 12, 20 on others (N = 1, 2, 3).
 const RANK_TOLERANCE: f64 = 1e-9;
 
-/// Numbers of a block up to which the processor finds the way to the next by itself: asking for the 55 of S2 costs 4 %, for
-/// the 153 of S3 and the 351 of S4 it gains 3 %.
+/// Above this count of numbers in a block, the numbers of the next block are prefetched. Below it the processor
+/// prefetches by itself: to prefetch the 55 of S2 costs 4 %; for the 153 of S3 and the 351 of S4 it gains 3 %.
 const FEW: usize = 128;
 
 /// C of all blocks.
@@ -23,34 +23,36 @@ pub type CurlPool = Pool<Matrix<f64>, Matrix<F8>>;
 /// The complement of the gradients: F - Pi F = C (C^T W F), C of 2 (N+1)^2 rows (direction, node), W the mass matrix.
 ///
 /// Pi projects (F_i1, F_i2) at the nodes, in the weights w_a J_a, onto the gradients of Q_N in parent coordinates and
-/// of P_(N+1) in X. Uniform F and the cell mean are kept exactly. Units of C: 1/m. C is kept as the step wants it.
+/// of P_(N+1) in X. Uniform F and the cell mean are kept exactly. Units of C: 1/m. C is stored in the form that the
+/// step uses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurlFree {
     /// By class of congruent cells.
     pub pool: Pool<Class, Vec<F8>>,
-    /// What the cells of mixed blocks have in common; the pool has their [`Curl::core`].
+    /// The tables that the cells of mixed blocks share. The pool has the [`Curl::core`] of each.
     pub curl: Curl,
 }
 
 /// C of congruent cells.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Class {
-    /// Itself.
+    /// C itself, for any shape.
     Whole(Matrix<f64>),
-    /// Of parallelograms.
+    /// The two halves by parity, for parallelograms.
     Halves(Halves),
 }
 
 /// C C^T W of a parallelogram, by parity.
 ///
-/// Half a turn about the middle leaves a parallelogram as it is and takes node a to (N+1)^2 - 1 - a. So the parts
-/// F_a + F_a' and F_a - F_a' of each pair of nodes are projected on their own, by matrices of half the size, on rows
-/// (direction, a), a up to the middle. They are so small that one product is no more work than C^T W and then C.
+/// Half a turn about the middle takes a parallelogram to itself and node a to (N+1)^2 - 1 - a = a'. So the sums F_a +
+/// F_a' and the differences F_a - F_a' of each pair of nodes are projected separately, by matrices of half the size, on
+/// rows (direction, a), a up to the middle. These matrices are so small that one product is no more work than C^T W and
+/// then C.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Halves {
-    /// On F_a + F_a' of ((N+1)^2 + 1)/2 nodes; of the node in the middle, where there is one, on F itself.
+    /// Acts on F_a + F_a' of ((N+1)^2 + 1)/2 nodes; at the node in the middle, if there is one, on F itself.
     pub even: Matrix<f64>,
-    /// On F_a - F_a' of (N+1)^2/2 nodes.
+    /// Acts on F_a - F_a' of (N+1)^2/2 nodes.
     pub odd: Matrix<f64>,
 }
 
@@ -114,7 +116,7 @@ impl CurlFree {
         }
     }
 
-    /// Asks for what the projection of a block reads, where that is its own.
+    /// Prefetches the matrices of a block, if the block has its own.
     #[inline]
     pub fn ask_for(&self, block: usize) {
         if let Some(&Share::Own(k)) = self.pool.share.get(block)
@@ -136,7 +138,7 @@ impl CurlFree {
 }
 
 impl Halves {
-    /// Both rows of F less their parts.
+    /// Subtracts from both rows of F their part that is no gradient.
     fn project(&self, f: &mut [f64]) {
         let (evens, odds) = (self.even.rows / 2, self.odd.rows / 2);
         let n = evens + odds;
@@ -163,7 +165,7 @@ impl Halves {
         }
     }
 
-    /// Those of a complement, none where half a turn changes the projection.
+    /// The two halves of a complement; `None` if half a turn changes the projection.
     fn of(c: &Matrix<f64>, masses: &[f64]) -> Option<Self> {
         let n = masses.len();
         let full = |r: usize, s: usize| {
@@ -189,12 +191,13 @@ impl Halves {
     }
 }
 
-/// What a control takes of R = F - Pi F.
+/// The part of R = F - Pi F that a control removes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Relax {
-    /// All of it. Pi is orthogonal in the mass matrix, not in the energy: strain may come of rotations, and energy of nothing.
+    /// All of R. Pi is orthogonal in the mass matrix, not in the energy: it may turn rotations into strain, and so make
+    /// energy out of nothing.
     Gradient,
-    /// Its rotation and its deviator, at a rate tied to compression.
+    /// The rotation and the deviator of R, at a rate that follows the compression.
     Rotation,
 }
 
@@ -212,7 +215,7 @@ fn project(c: &Matrix<f64>, masses: &[f64], f: &mut [f64]) {
     }
 }
 
-/// Zero columns up to `columns`: cells of one block may have complements of different sizes.
+/// Adds zero columns up to `columns`, because cells of one block may have complements of different sizes.
 fn widen(c: &Matrix<f64>, columns: usize) -> Matrix<f64> {
     let entry = |e: usize| c.row(e / columns).get(e % columns).copied().unwrap_or(0.0);
     Matrix::new(c.rows, columns, (0..c.rows * columns).map(entry).collect())
@@ -223,7 +226,7 @@ fn complement(corners: &[[f64; 2]; 4], line: &Line) -> Matrix<f64> {
     let n = line.m * line.m;
     let root: Vec<f64> = (0..n).map(|a| mass(corners, line, a).sqrt()).collect();
     let gradients = gradients(corners, line);
-    // At least square (zero columns), so that Q spans the whole space.
+    // Zero columns make it at least square, so that Q spans the whole space.
     let size = (2 * n).max(gradients.len());
     let mut matrix = DMatrix::zeros(2 * n, size);
     for (k, column) in gradients.iter().enumerate() {

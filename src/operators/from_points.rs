@@ -1,7 +1,7 @@
 //! Grid unknowns from material points alone, P2G by chi (18): the start from a cloud.
 //!
-//! With N+2 points per direction the order is kept (design section 8). Momentum and mean F are those of the fit, not of the
-//! body that the points came from: that body's grid is gone.
+//! With N+2 points per direction the order is kept (design section 8). Momentum and mean F are those of the fit. They
+//! are not exactly those of the body that the points came from, because its grid is not known.
 
 use super::carry::{Limits, Tree, trees};
 use super::certificate::of_points;
@@ -14,12 +14,13 @@ use rayon::prelude::*;
 
 /// Values at the nodes, `[cell][component][node]`, from values at the points, `[point][component]`.
 ///
-/// A cell takes the fit of Q_N to its own points; where they cannot carry it (`limits`, as for sampling), that of P_N in X to
-/// the nearest points of its group of cells, so many that their Lebesgue constant at its nodes is within the limit: also of
-/// order N+1, and exact on P_N.
+/// A cell takes the fit of Q_N to its own points. Where these cannot carry it (`limits`, as for sampling), it takes the
+/// fit of P_N in X to the nearest points of its group of cells. Their number is such that their Lebesgue constant at
+/// the nodes of the cell (how much the fit amplifies errors there) is within the limit. This fit also has the order
+/// N+1, and is exact on P_N.
 ///
 /// # Errors
-/// A cell that too few points stand around, by number.
+/// A cell with too few points around it; the error has its number.
 pub fn from_points(
     mesh: &Mesh,
     line: &Line,
@@ -42,7 +43,7 @@ pub fn from_points(
         let (weights, points) = match (&fits[class[cell]], &trees[mesh.cell_group[cell]]) {
             (Some(weights), _) => (weights.data.clone(), own),
             (None, Some(tree)) => around(mesh, line, limits, cell, tree)?,
-            // `trees` has one for each group with a poor cell.
+            // `trees` has a tree for each group that has a cell whose points cannot carry Q_N.
             (None, None) => return Err(lonely(mesh, line, cell)),
         };
         let rows = weights.chunks(points.len());
@@ -57,7 +58,7 @@ pub fn from_points(
 fn to_nodes(line: &Line, xi: &[[f64; 2]], number: u64) -> Result<Matrix<f64>, Error> {
     match PointMatrices::at_points(line, xi, number)?.to_dense() {
         PointMatrices::Dense { to_nodes, .. } => Ok(to_nodes),
-        // `to_dense` gives no other.
+        // `to_dense` gives no other kind.
         PointMatrices::Lattice(_) | PointMatrices::Nodes(_) => Err(Error::input(
             format!("the points of cell {number} have no matrix"),
             "put at least (N+1)^2 points in general position into each cell",
@@ -77,7 +78,7 @@ fn around(
     let at: Vec<[f64; 2]> = line.nodes().into_iter().map(|xi| map::position(&corners, xi)).collect();
     let middle = map::position(&corners, [0.5, 0.5]);
     let unknowns = line.m * (line.m + 1) / 2;
-    // From as few points as are safe, on average, up to those of some rings of cells.
+    // The number of points goes from as few as are safe on average to those of some rings of cells.
     for count in [2, 3, 4, 6, 8, 12, 16, 24].map(|times| times * unknowns) {
         let near: Vec<_> = tree.nearest_neighbor_iter(middle).take(count).collect();
         let x: Vec<[f64; 2]> = near.iter().map(|point| *point.geom()).collect();

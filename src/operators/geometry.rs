@@ -1,7 +1,7 @@
 //! Metric terms of bilinear cells, per block of 8.
 //!
-//! All of them follow from the three vectors of the map X(xi) = X0 + a xi1 + b xi2 + c xi1 xi2. Kernels find them from these
-//! where they need them: a few operations cost less than what memory takes to bring some numbers for each node.
+//! All metric terms follow from the three vectors of the map X(xi) = X0 + a xi1 + b xi2 + c xi1 xi2. Kernels compute
+//! them where they need them: a few operations cost less than reading some numbers for each node from memory.
 
 use super::{Blocks, Line};
 use crate::lane::{F8, LANES, Lane, Lanes, load_array};
@@ -24,7 +24,7 @@ pub struct Metric<T> {
 }
 
 impl Metric<F8> {
-    /// In lanes.
+    /// The map of eight cells, one a lane.
     #[inline(always)]
     pub fn load<L: Lanes>(&self) -> Metric<L> {
         Metric {
@@ -36,7 +36,7 @@ impl Metric<F8> {
         }
     }
 
-    /// Of one lane.
+    /// The map of the cell in one lane.
     pub fn lane(&self, lane: usize) -> Metric<f64> {
         let pair = |x: &[F8; 2]| x.map(|x| x.0[lane]);
         Metric {

@@ -16,7 +16,7 @@ pub struct Matrix<C> {
 }
 
 impl<C: Coefficient> Matrix<C> {
-    /// From entries, row by row.
+    /// A matrix from its entries, row by row.
     pub fn new(rows: usize, columns: usize, data: Vec<C>) -> Self {
         debug_assert_eq!(data.len(), rows * columns);
         Self { rows, columns, data }
@@ -57,7 +57,7 @@ impl Matrix<F8> {
     }
 }
 
-/// Whose matrices a block uses.
+/// The place of the matrix that a block uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Share {
     /// All its cells are congruent: entry of [`Pool::shared`].
@@ -69,11 +69,11 @@ pub enum Share {
 /// Matrices of all blocks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pool<S, O> {
-    /// For each block.
+    /// For each block the place of its matrix.
     pub share: Vec<Share>,
-    /// One a class of congruent cells.
+    /// One matrix for each class of congruent cells.
     pub shared: Vec<S>,
-    /// One a block of different cells.
+    /// One matrix for each block of different cells.
     pub own: Vec<O>,
 }
 
@@ -106,7 +106,7 @@ impl<S, O> Pool<S, O> {
                 own.push(interleave(cells.map(|cell| &all[class[cell]])));
             }
         }
-        // Classes that stand only in mixed blocks need no copy of their own.
+        // A class that occurs only in mixed blocks needs no matrix of its own.
         let mut number = vec![0; all.len()];
         let mut shared = Vec::new();
         for (class, matrices) in all.into_iter().enumerate().filter(|(class, _)| used[*class]) {

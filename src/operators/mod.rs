@@ -41,13 +41,13 @@ pub struct Operators {
     pub blocks: Blocks,
     /// Metric terms at nodes and faces.
     pub geometry: Geometry,
-    /// Transfer between points and nodes, derivatives at points; none for RK-DGFEM.
+    /// Transfer between points and nodes, and derivatives at points; `None` for RK-DGFEM.
     pub points: Option<Points>,
-    /// The projection onto gradients; none where no control of the curl is asked for.
+    /// The projection onto gradients; `None` if the scene has no control of the curl.
     pub curl_free: Option<CurlFree>,
 }
 
-/// What of the operators a method needs.
+/// The parts of the operators that a method needs.
 #[derive(Debug, Clone, Copy)]
 pub struct Needs<'a> {
     /// Degree N in space.
@@ -69,7 +69,7 @@ impl Operators {
         Ok(Self::assemble(mesh, line, blocks, needs, stored))
     }
 
-    /// Adds to stored matrices what is derived from the mesh at once.
+    /// Completes stored matrices by the parts that are quickly computed from the mesh.
     pub fn assemble(mesh: &Mesh, line: Line, blocks: Blocks, needs: &Needs, stored: Stored) -> Self {
         let geometry = Geometry::new(mesh, &blocks);
         let points = needs.sampling.zip(stored.points).map(|(s, pool)| Points::new(mesh, &blocks, &line, s, pool));
@@ -82,7 +82,8 @@ impl Operators {
         self.line.m * self.line.m
     }
 
-    /// Points of a block where the law is evaluated between steps: of the fullest lane; nodes, where there are no points.
+    /// The number of points of a block where the law is evaluated between steps: that of the lane with the most points.
+    /// If the method has no points, these are the nodes.
     pub fn block_points(&self, block: usize) -> usize {
         self.points.as_ref().map_or(self.nodes(), |points| points.first[block + 1] - points.first[block])
     }
@@ -121,9 +122,10 @@ pub struct Line {
     /// Traces of the displacement whose jump is held ([`crate::riemann::hold`]) at 0 and 1: l_k, less w_k P_N(2 x_k - 1) where N is
     /// even, P_N being Legendre's polynomial.
     ///
-    /// What no polynomial of degree N has of a smooth function begins with P_(N+1): even, it is the same at both ends and does
-    /// not jump where cells are alike; odd, it jumps by 2 (h/2)^(N+1) u^(N+1) / (2N+1)!!, and to hold that jump would cost
-    /// an order. It is 1/(2N+1) of the jump of the highest coefficient a_N, and a_N / (2N+1) = sum_k w_k P_N u_k.
+    /// The part of a smooth function that no polynomial of degree N can represent begins with P_(N+1). If P_(N+1) is
+    /// even, it is the same at both ends and does not jump between equal cells. If it is odd, it jumps by 2 (h/2)^(N+1)
+    /// u^(N+1) / (2N+1)!!, and to hold that jump would cost an order. The jump is 1/(2N+1) of the jump of the highest
+    /// coefficient a_N, and a_N / (2N+1) = sum_k w_k P_N u_k.
     pub held: [Vec<f64>; 2],
     /// Lift by those traces: [`Line::held`] / w_k.
     pub held_lift: [Vec<f64>; 2],

@@ -1,7 +1,8 @@
-//! Orders of the nodes of a graph in which neighbours are near.
+//! Orders of the nodes of a graph such that neighbours are near each other in the order.
 
-/// The nodes in their own order, or in that of Cuthill and McKee where neighbours are nearer there: by the middle one of all
-/// nodes, since the seams of periodic edges are far apart in the best of orders, and few.
+/// The nodes in their own order, or in the order of Cuthill and McKee if neighbours are nearer in it. The two are
+/// compared by the median over all nodes: at periodic edges neighbours are far apart in any order, but there are few of
+/// them.
 pub fn narrow(graph: &[Vec<usize>]) -> Vec<usize> {
     let own: Vec<usize> = (0..graph.len()).collect();
     let other = cuthill_mckee(graph);
@@ -10,7 +11,8 @@ pub fn narrow(graph: &[Vec<usize>]) -> Vec<usize> {
     if reach(graph, &place) < reach(graph, &own) { other } else { own }
 }
 
-/// How far the farthest neighbour of a node is, for the middle one of all nodes, `place` being that of each node of a graph.
+/// The distance of a node from its farthest neighbour in the order, the median over all nodes. `place` is the place of
+/// each node in the order.
 fn reach(graph: &[Vec<usize>], place: &[usize]) -> usize {
     let of = |(node, neighbours): (usize, &Vec<usize>)| {
         neighbours.iter().map(|&other| place[node].abs_diff(place[other])).max().unwrap_or(0)
@@ -18,15 +20,15 @@ fn reach(graph: &[Vec<usize>], place: &[usize]) -> usize {
     middle(graph.iter().enumerate().map(of))
 }
 
-/// The middle one of some numbers; 0 of none.
+/// The median of some numbers; 0 for an empty list.
 pub fn middle(numbers: impl Iterator<Item = usize>) -> usize {
     let mut all: Vec<usize> = numbers.collect();
     all.sort_unstable();
     all.get(all.len() / 2).copied().unwrap_or(0)
 }
 
-/// Cuthill and McKee's order: breadth first from a node at the edge of the graph, neighbours by their degree. Parts that do
-/// not hang together follow each other. (Proc. 24th Nat. Conf. ACM, 1969.)
+/// Cuthill and McKee's order: breadth first from a node at the edge of the graph, neighbours by their degree. Parts
+/// that are not connected follow each other. (Proc. 24th Nat. Conf. ACM, 1969.)
 pub fn cuthill_mckee(graph: &[Vec<usize>]) -> Vec<usize> {
     let mut order = Vec::with_capacity(graph.len());
     let mut seen = vec![false; graph.len()];
@@ -34,7 +36,8 @@ pub fn cuthill_mckee(graph: &[Vec<usize>]) -> Vec<usize> {
         if seen[first] {
             continue;
         }
-        // The last node of a search lies at the edge; twice makes it nearly as far as can be.
+        // The last node of a search lies at the edge of the graph. Two searches give a node that is nearly as far out
+        // as possible.
         let mut start = first;
         for _ in 0..2 {
             let mut visited = seen.clone();
@@ -45,7 +48,7 @@ pub fn cuthill_mckee(graph: &[Vec<usize>]) -> Vec<usize> {
     order
 }
 
-/// Breadth first from `start` over what is not `seen` yet.
+/// Breadth first from `start` over the nodes that are not `seen` yet.
 fn search(graph: &[Vec<usize>], start: usize, seen: &mut [bool]) -> Vec<usize> {
     let (mut order, mut next) = (vec![start], 0);
     seen[start] = true;

@@ -1,4 +1,4 @@
-//! The matrices of the points of a cell: dense for any cloud, 1D factors where the points are a lattice.
+//! The matrices of the points of a cell: dense for any cloud; 1D factors if the points are a lattice (a regular K x K grid).
 
 use super::{Line, Matrix};
 use crate::basis::MovingLeastSquares;
@@ -6,7 +6,7 @@ use crate::basis::mls::LineFit;
 use crate::error::Error;
 use crate::lane::{Coefficient, F8, LANES, Lane, Lanes, Portable};
 
-/// Coordinates that differ by less are the same: clouds from files are held to 2^-40 of the cell (`cloud::locate`).
+/// Coordinates that differ by less count as equal. Points from files are rounded to 2^-40 of the cell (`cloud::locate`).
 const SAME: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// Matrices of one class of clouds, in parent coordinates.
@@ -42,7 +42,7 @@ pub struct Factor<C> {
 }
 
 impl<C: Coefficient> PointMatrices<C> {
-    /// N_p, the points of a cell (of the fullest cell of the block).
+    /// N_p, the number of points of a cell (of the cell with the most points in the block).
     pub fn points(&self) -> usize {
         match self {
             PointMatrices::Dense { from_nodes, .. } => from_nodes.rows,
@@ -51,8 +51,8 @@ impl<C: Coefficient> PointMatrices<C> {
         }
     }
 
-    /// Whether the points of a lattice are more than the unknowns of Q_N: before a field is differentiated by factors it
-    /// has to be fitted, G2P after P2G.
+    /// Whether a lattice has more points than Q_N has unknowns. Then a field has to be fitted (G2P after P2G) before it is
+    /// differentiated by factors.
     pub fn is_overdetermined(&self) -> bool {
         match self {
             PointMatrices::Lattice([a, _]) => a.from_nodes.rows > a.from_nodes.columns,
@@ -61,7 +61,7 @@ impl<C: Coefficient> PointMatrices<C> {
     }
 
     /// sum_a m_a chi_p(X_a) of all points for numbers m_a at the nodes: with the mass matrix the integrals of the chi_p over
-    /// each cell, exact and of either sign. Points that fill up a lane have none.
+    /// each cell, exact and of either sign. They are 0 for points that only fill up a lane.
     pub fn integrals(&self, masses: &[F8]) -> Vec<F8> {
         let m = masses.len().isqrt();
         let of = |matrix: &Matrix<C>, a: usize, p: usize| matrix.data[a * matrix.columns + p].lanes::<Portable>();
@@ -93,7 +93,7 @@ impl<C: Coefficient> PointMatrices<C> {
         }
     }
 
-    /// Kind and count that give all shapes: 0 and N_p for any cloud, 1 and K for lattices, 2 and N + 1 for the nodes.
+    /// Kind and count, which determine all shapes: 0 and N_p for any cloud, 1 and K for lattices, 2 and N + 1 for the nodes.
     pub fn kind(&self) -> (usize, usize) {
         match self {
             PointMatrices::Dense { from_nodes, .. } => (0, from_nodes.rows),
@@ -102,7 +102,7 @@ impl<C: Coefficient> PointMatrices<C> {
         }
     }
 
-    /// Shapes of [`PointMatrices::matrices`] for a kind and count and m nodes per direction; none for other kinds.
+    /// Shapes of [`PointMatrices::matrices`] for a kind, a count and m nodes per direction; `None` for other kinds.
     pub fn shapes(kind: usize, count: usize, m: usize) -> Option<Vec<(usize, usize)>> {
         let n = m * m;
         match kind {
@@ -113,7 +113,7 @@ impl<C: Coefficient> PointMatrices<C> {
         }
     }
 
-    /// Back from [`PointMatrices::matrices`]; none where their number is that of no kind.
+    /// The inverse of [`PointMatrices::matrices`]; `None` if no kind has this number of matrices.
     pub fn from_list(list: Vec<Matrix<C>>) -> Option<Self> {
         let mut list = list.into_iter();
         let mut next = || list.next();
@@ -137,7 +137,7 @@ impl PointMatrices<f64> {
         PointMatrices::Nodes(Matrix::new(line.m, line.m, line.slope.clone()))
     }
 
-    /// Moving least squares on any unisolvent cloud of the cell with this number.
+    /// Moving least squares on any points that determine a polynomial of Q_N.
     ///
     /// # Errors
     /// A cloud that cannot carry Q_N, with the remedy.
@@ -167,8 +167,9 @@ impl PointMatrices<f64> {
         }
     }
 
-    /// Eight different cells side by side. Lattices of one size keep their factors; else all are dense, and cells with
-    /// fewer points than the fullest get copies of their first point, which no fit uses (zero columns).
+    /// Eight different cells side by side. If all are lattices of one size they keep their factors. Otherwise all are
+    /// dense, and cells with fewer points than the largest cell get copies of their first point, which no fit uses
+    /// (zero columns).
     pub fn interleave(lanes: [&Self; LANES]) -> PointMatrices<F8> {
         let first = lanes[0].kind();
         if first.0 != 0 && lanes.iter().all(|lane| lane.kind() == first) {
@@ -196,7 +197,7 @@ impl PointMatrices<f64> {
 }
 
 impl PointMatrices<F8> {
-    /// Those of one lane.
+    /// The matrices of one lane.
     pub fn lane(&self, lane: usize) -> PointMatrices<f64> {
         let one = |m: &Matrix<F8>| Matrix::new(m.rows, m.columns, m.data.iter().map(|x| x.0[lane]).collect());
         match self {
@@ -214,7 +215,7 @@ impl PointMatrices<F8> {
 }
 
 impl Factor<f64> {
-    /// Least squares on points of a line; none where they cannot carry P_N.
+    /// Least squares on points of a line; `None` if they cannot carry P_N.
     fn new(line: &Line, x: &[f64]) -> Option<Self> {
         let (m, k, fit) = (line.m, x.len(), LineFit::new(line.m - 1, x)?);
         Some(Self {
@@ -225,13 +226,13 @@ impl Factor<f64> {
     }
 }
 
-/// The factors of a lattice that carries Q_N; none for any other cloud.
+/// The factors of a lattice that carries Q_N; `None` for any other cloud.
 fn factors(line: &Line, xi: &[[f64; 2]]) -> Option<[Factor<f64>; 2]> {
     let [x, y] = lattice(xi)?;
     Some([Factor::new(line, &x)?, Factor::new(line, &y)?])
 }
 
-/// The coordinates x_i, y_j of K x K points `p = i K + j` at (x_i, y_j); none for any other cloud.
+/// The coordinates x_i, y_j of K x K points `p = i K + j` at (x_i, y_j); `None` for any other cloud.
 fn lattice(xi: &[[f64; 2]]) -> Option<[Vec<f64>; 2]> {
     let k = xi.len().isqrt();
     if k == 0 || k * k != xi.len() {

@@ -8,7 +8,7 @@ use crate::lane::{F8, LANES};
 use crate::mesh::{Mesh, map};
 use rayon::prelude::*;
 
-/// Where the predictor samples the law.
+/// The places where the predictor evaluates the law.
 #[derive(Debug, Clone, Copy)]
 pub enum Sampling<'a> {
     /// At the grid nodes, chi = Phi: ADER-DGFEM.
@@ -26,7 +26,7 @@ impl<'a> Sampling<'a> {
         }
     }
 
-    /// Cells with the same points to the bit: (class of each cell, a cell of each class).
+    /// Classes of cells with the same points to the bit: (class of each cell, a cell of each class).
     pub fn classes(&self, nodes: &'a [[f64; 2]], cells: usize) -> (Vec<usize>, Vec<usize>) {
         classes(cells, |cell| self.of(nodes, cell).iter().flatten().map(|x| x.to_bits()).collect::<Vec<u64>>())
     }
@@ -44,16 +44,16 @@ pub struct Points {
     pub first: Vec<usize>,
     /// First entry of each block in `metric` (length: blocks + 1).
     first_metric: Vec<usize>,
-    /// dxi_b/dX_a, 1/m: `[b][a]` at each point, or once a block, or not at all.
+    /// dxi_b/dX_a, 1/m: `[b][a]` at each point, or once for a block, or no entry ([`Points::metric`]).
     metric: Vec<F8>,
     /// Parent coordinates of the points: `[point of block][2]`.
     pub parent: Vec<F8>,
-    /// Points of each lane of each block; others are copies of the lane's first.
+    /// The number of points of each lane of each block. Further points of the lane are copies of its first.
     pub count: Vec<[u32; LANES]>,
 }
 
 impl Points {
-    /// The matrices of all blocks: what is worth storing.
+    /// The matrices of all blocks: the part that is worth storing.
     ///
     /// # Errors
     /// The first cell whose points cannot carry Q_N.
@@ -91,8 +91,9 @@ impl Points {
         out
     }
 
-    /// Holds what the predictor needs of the metric of a block. Where each lane has its own dense matrices they take it
-    /// in, as derivatives along X; where it is the same at all points (affine cells, to rounding) one is enough.
+    /// Stores the metric of a block as the predictor needs it. If each lane has its own dense matrices, these take in
+    /// the metric, as derivatives along X. If the metric is the same at all points (affine cells, to rounding), it is
+    /// stored once.
     fn hold(&mut self, block: usize, metric: Vec<[F8; 4]>) {
         if let Share::Own(k) = self.pool.share[block]
             && let PointMatrices::Dense { slope, .. } = &mut self.pool.own[k]
@@ -103,8 +104,8 @@ impl Points {
         self.metric.extend(metric[..count.min(metric.len())].as_flattened());
     }
 
-    /// dxi_b/dX_a of a block, 1/m: `[b][a]` at each point; once, where it is the same at all points; not at all, where
-    /// the derivatives of its matrices are along X.
+    /// dxi_b/dX_a of a block, 1/m: `[b][a]` at each point; once, if it is the same at all points; no entry, if the
+    /// derivatives of its matrices are along X.
     pub fn metric_of(&self, block: usize) -> &[F8] {
         &self.metric[self.first_metric[block]..self.first_metric[block + 1]]
     }
@@ -133,8 +134,8 @@ fn inverse(corners: [[[f64; 2]; 4]; LANES], xi: [[f64; 2]; LANES]) -> [F8; 4] {
     std::array::from_fn(|k| F8(inverse.map(|m| m[k / 2][k % 2])))
 }
 
-/// Whether the metric is the same at all points but for rounding: cells that are given as parallelograms differ by 1e-15
-/// times the ratio of the size of the mesh to theirs.
+/// Whether the metric is the same at all points, up to rounding. In cells that are given as parallelograms it differs
+/// by 1e-15 times the size of the mesh over the size of the cell.
 fn is_constant(metric: &[[F8; 4]]) -> bool {
     (0..LANES).all(|lane| {
         let size = metric.iter().flatten().fold(0.0_f64, |size, m| size.max(m.0[lane].abs()));

@@ -1,15 +1,15 @@
-//! Where the trace across each face of a block lies.
+//! For each face of a block: the place of the trace on its other side.
 
 use crate::lane::LANES;
 
-/// A face of a cell as the neighbour across it sees it.
+/// The face of a neighbour, seen from this side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Across {
     /// The face among all faces of all blocks: 4 block + local face.
     pub face: usize,
     /// The lane of the cell.
     pub lane: usize,
-    /// Whether its points run the other way.
+    /// Whether its points run in the opposite direction.
     pub flip: bool,
 }
 
@@ -26,59 +26,60 @@ pub enum Neighbour {
     Padding,
 }
 
-/// Where the traces across a face of a block lie.
+/// The places of the traces on the other side of a face of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
-    /// Each lane's in the same lane of one face of one block, with the points in the same order: read as it lies. Lanes
-    /// at a boundary find there what they must not use.
+    /// The other side of each lane is the same lane of one face of one block, with the points in the same order: it is read
+    /// without any reordering. For lanes at a boundary the values there are meaningless and must not be used.
     Aligned(usize),
-    /// Lane l in lane l + `by` of the `first` face for l < 8 - `by`, then in lane l + `by` - 8 of the `second`, with the
-    /// points in the same order: cells in rows. Lanes at a boundary find there what they must not use.
+    /// The other side of lane l is lane l + `by` of the `first` face for l < 8 - `by`, and lane l + `by` - 8 of the
+    /// `second` for the rest, with the points in the same order. This is so for cells in rows. For lanes at a boundary
+    /// the values there are meaningless and must not be used.
     Joined {
         /// A face, 4 block + local face.
         first: usize,
-        /// Another, or the same.
+        /// Another face, or the same.
         second: usize,
-        /// 1 to 7.
+        /// The shift of lanes, 1 to 7.
         by: usize,
     },
-    /// Anywhere: entry of [`super::Blocks::gathered`].
+    /// The other sides are at different places: entry of [`super::Blocks::gathered`].
     Gathered(usize),
 }
 
-/// What the flux of a face of a block does.
+/// What the flux needs to know of a face of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plan {
-    /// The other side.
+    /// The places of the other side.
     pub side: Side,
     /// Whether a lane is at a boundary or at another material.
     pub special: bool,
 }
 
-/// Lanes whose other sides lie in one face.
+/// The lanes whose other sides are in one face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Source {
     /// The face, 4 block + local face.
     pub face: u32,
-    /// Whether its points run the other way.
+    /// Whether its points run in the opposite direction.
     pub flip: bool,
     /// A bit for each lane.
     pub lanes: u8,
 }
 
-/// The other sides of lanes that lie anywhere. Those that one face has are read together: neighbouring cells of a mesh without
-/// rows have five faces of blocks across theirs in the middle, at most eight.
+/// The other sides of the lanes of a face, at different places. Those that are in one face of a block are read
+/// together. On a mesh without rows the other sides are in five faces of blocks on average, and in eight at most.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Gathered {
     /// The lane of the other side of each lane.
     pub lane: [u8; LANES],
-    /// How many of `all` count.
+    /// How many entries of `all` are used.
     count: u8,
     all: [Source; LANES],
 }
 
 impl Gathered {
-    /// The faces in which the other sides lie; each lane is in one of them.
+    /// The faces that have the other sides. Each lane is in one of them.
     pub fn sources(&self) -> &[Source] {
         &self.all[..usize::from(self.count)]
     }
@@ -91,7 +92,7 @@ impl Gathered {
         Across { face: face as usize, lane: usize::from(self.lane[lane]), flip }
     }
 
-    /// Of the other sides.
+    /// From the other sides of the lanes.
     pub fn of(across: &[Across; LANES]) -> Self {
         let none = Source { face: 0, flip: false, lanes: 0 };
         let mut out = Self { lane: across.map(|there| there.lane as u8), count: 0, all: [none; LANES] };
@@ -109,7 +110,7 @@ impl Gathered {
     }
 }
 
-/// Whether the lanes across a face follow each other in one or two faces.
+/// Whether the other sides of the lanes follow each other in one or two faces.
 pub(super) fn joined(across: &[Across; LANES], neighbours: &[Neighbour; LANES]) -> Option<Side> {
     let is_cell = |lane: &usize| matches!(neighbours[*lane], Neighbour::Cell(_) | Neighbour::Interface(..));
     (1..LANES).find_map(|by| {

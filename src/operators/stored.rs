@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::lane::{Coefficient, F8, LANES, as_f64};
 use crate::mesh::Mesh;
 
-/// The results of all decompositions: everything else of the operators follows from the mesh at once.
+/// The results of all decompositions. Everything else in the operators is quickly computed from the mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stored {
     /// Matrices of the points, where the method has a predictor.
@@ -28,16 +28,16 @@ impl Stored {
     }
 }
 
-/// Matrices that are stored together; one number, their size, gives their kind and all their shapes.
+/// Matrices that are stored together. One number, the size, determines their kind and all their shapes.
 pub trait Bundle<C: Coefficient>: Sized {
     /// The size.
     fn size(&self) -> usize;
     /// Shapes (rows, columns) for a size and n nodes a cell, in the order of storage.
-    /// None where no kind has that size.
+    /// `None` if no kind has that size.
     fn shapes(size: usize, nodes: usize) -> Option<Vec<(usize, usize)>>;
     /// The matrices, in the order of storage.
     fn list(&self) -> Vec<&Matrix<C>>;
-    /// Back from the matrices; none where their number is wrong.
+    /// The inverse of [`Bundle::list`]; `None` if their number is wrong.
     fn from_list(list: Vec<Matrix<C>>) -> Option<Self>;
 }
 
@@ -89,7 +89,7 @@ pub struct Flat {
 }
 
 impl Flat {
-    /// From a pool.
+    /// The arrays of a pool.
     pub fn of<S: Bundle<f64>, O: Bundle<F8>>(pool: &Pool<S, O>) -> Self {
         let number = |share: &Share| match *share {
             Share::Shared(k) => k as i64,
@@ -104,7 +104,7 @@ impl Flat {
         }
     }
 
-    /// Back to a pool for `blocks` blocks of cells with `nodes` nodes; none where the arrays do not fit together.
+    /// The pool of these arrays, for `blocks` blocks of cells with `nodes` nodes; `None` if the arrays do not fit together.
     pub fn pool<S: Bundle<f64>, O: Bundle<F8>>(&self, blocks: usize, nodes: usize) -> Option<Pool<S, O>> {
         let (shared_count, own_count) = (self.shared_sizes.len() as i64, self.own_sizes.len() as i64);
         let fits = |k: &i64| if *k >= 0 { *k < shared_count } else { -1 - *k < own_count };
@@ -123,7 +123,7 @@ impl Flat {
     }
 }
 
-/// Cuts entries into bundles of the given sizes; none where too few or too many are there.
+/// Cuts entries into bundles of the given sizes; `None` if there are too few or too many entries.
 fn cut<C: Coefficient, B: Bundle<C>>(sizes: &[usize], nodes: usize, mut entries: &[C]) -> Option<Vec<B>> {
     let mut out = Vec::with_capacity(sizes.len());
     for &size in sizes {

@@ -23,7 +23,7 @@ impl Polygon {
         &self.corners[..self.count]
     }
 
-    /// The part of it inside of a convex counter-clockwise quadrilateral.
+    /// The part of the polygon inside a convex counter-clockwise quadrilateral.
     pub fn clipped(mut self, by: &[[f64; 2]; 4]) -> Self {
         for k in 0..4 {
             if self.count == 0 {
@@ -55,7 +55,8 @@ impl Polygon {
         out
     }
 
-    /// Rounding may let a nearly flat polygon cross a line more than twice: what does not fit has no area.
+    /// By rounding a nearly flat polygon may cross a line more than twice. Corners beyond the capacity are dropped;
+    /// they enclose no area.
     fn push(&mut self, x: [f64; 2]) {
         if self.count < CORNERS {
             self.corners[self.count] = x;
@@ -73,8 +74,8 @@ impl Polygon {
         0.5 * sum
     }
 
-    /// Calls `visit` for quadrilaterals (corner numbers) that fill it; the last one is a triangle, its last corner twice,
-    /// where the number of corners is odd.
+    /// Calls `visit` for quadrilaterals (corner numbers) that fill the polygon. If the number of corners is odd, the
+    /// last one is a triangle: its last corner is given twice.
     pub fn quads(&self, mut visit: impl FnMut([usize; 4])) {
         let mut k = 1;
         while k + 1 < self.count {

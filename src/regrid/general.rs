@@ -1,4 +1,5 @@
-//! Between any two grids: intersections of cells by clipping, quadrature on the pieces, inverse maps in both cells.
+//! The projection between any two grids: intersections of cells by clipping, quadrature on the pieces, inverse maps in both
+//! cells.
 
 use super::clip::Polygon;
 use super::nodal::{Nodal, Values, combine, gather, scatter, spread};
@@ -9,14 +10,15 @@ use crate::mesh::map::{self, Corners};
 use crate::quadrature::gauss_legendre;
 use rayon::prelude::*;
 
-/// A cell is covered where what is not is below this part of it: roundings of some clipped areas.
+/// A cell counts as covered if its uncovered area is below this part of it, which allows for rounding of some clipped areas.
 const COVERED: f64 = 1e-11;
-/// Pieces below this part of a cell are rounding.
+/// Pieces below this part of a cell count as rounding and are ignored.
 const NO_PIECE: f64 = 1e-14;
-/// Beyond the pieces of a cell the polynomial of its largest piece goes on up to this part of the cell; its mean beyond.
+/// If the uncovered part of a cell is at most this part of it, the polynomial of its largest piece is continued there.
+/// If it is more, the mean is used there.
 const EXTENDED: f64 = 0.3;
 
-/// Projects `field` onto the new cells that `same` does not name, into `u`; what each cell adds to the sums.
+/// Projects `field` onto the new cells that `same` does not name, into `u`. Returns the share of each cell in the sums.
 ///
 /// # Errors
 /// A new cell of a material that the old grid lacks.
@@ -51,22 +53,22 @@ pub(super) fn project<const M: usize>(
     shares.collect()
 }
 
-/// What all new cells share.
+/// The data that all new cells share.
 struct Job<'a, const M: usize> {
     old: &'a Grid<'a>,
     new: &'a Grid<'a>,
     field: &'a Field<'a>,
     nodal: Nodal<M>,
     locator: Locator,
-    /// Gauss points per direction on a piece of two parallelograms: Phi_a U_old has the degree 4N there, and the map of the
-    /// piece adds one to it.
+    /// Gauss points per direction on a piece of two parallelograms. Phi_a U_old has the degree 4N there, and the map of
+    /// the piece adds one.
     exact: (Vec<f64>, Vec<f64>),
-    /// On other pieces, where inverse maps are no polynomials: on cells distorted by a fifth kinetic energy rose by 1.4e-11
-    /// (S3) with 2N + 2 points, see `tests`.
+    /// Gauss points per direction on other pieces, where inverse maps are no polynomials. On cells distorted by a
+    /// fifth, kinetic energy rose by 1.4e-11 (S3) with 2N + 2 points, see `tests`.
     fine: (Vec<f64>, Vec<f64>),
 }
 
-/// Memory of a thread.
+/// The working memory of a thread.
 #[derive(Default)]
 struct Scratch {
     candidates: Vec<usize>,
@@ -77,7 +79,7 @@ struct Scratch {
 #[derive(Clone, Copy)]
 struct Sample {
     weight: f64,
-    /// In the new cell.
+    /// Its parent coordinates in the new cell.
     xi: [f64; 2],
     value: Values,
 }
@@ -90,8 +92,8 @@ impl<const M: usize> Job<'_, M> {
         let covered: f64 = share.taken.iter().map(|taken| taken.area).sum();
         let hole = (1.0 - covered / area).max(0.0);
         let base = self.base(cell, &corners, &share.taken, hole)?;
-        // M^-1 int Phi_a (U_old - base) + base: uniform states are exact whatever the quadrature, and what no old cell
-        // covers has the values of the base.
+        // M^-1 int Phi_a (U_old - base) + base: a uniform state is exact for any quadrature, and the part that no old
+        // cell covers gets the values of the base.
         let mut values = [[[0.0; 8]; M]; M];
         for sample in &scratch.samples {
             let (x, y) = (self.nodal.at(sample.xi[0]), self.nodal.at(sample.xi[1]));
@@ -166,8 +168,8 @@ impl<const M: usize> Job<'_, M> {
         });
     }
 
-    /// What the projection starts from: the mean over the pieces; where a part is not covered, the polynomial of the
-    /// largest piece, or the mean of the nearest cell.
+    /// The base of the projection: the mean over the pieces. If a part of the cell is not covered, it is the polynomial
+    /// of the largest piece, or the mean of the nearest cell.
     fn base(&self, cell: usize, corners: &Corners, taken: &[Taken], hole: f64) -> Result<Base<M>, Error> {
         let stride = self.field.components * M * M;
         let unknowns = |old: usize| &self.field.u[stride * old..stride * (old + 1)];
@@ -194,7 +196,7 @@ impl<const M: usize> Job<'_, M> {
         Ok(Base::Mean(integral(self.old, self.field, near, unknowns(near)).map(|total| total / area)))
     }
 
-    /// The old cell of a material with the nearest centre. (Only for cells that no old one touches: there are few.)
+    /// The old cell of a material with the nearest centre. (Only for new cells that no old cell touches; there are few.)
     fn nearest(&self, corners: &Corners, material: usize) -> Option<usize> {
         let centre = map::position(corners, [0.5; 2]);
         let distance = |old: usize| {
@@ -206,10 +208,10 @@ impl<const M: usize> Job<'_, M> {
     }
 }
 
-/// What the projection starts from.
+/// The base of the projection.
 enum Base<const M: usize> {
     Mean(Values),
-    /// The polynomial of a cell with these corners, which goes on beyond it.
+    /// The polynomial of a cell with these corners, continued outside the cell.
     Polynomial(Corners, Box<[[Values; M]; M]>),
 }
 
@@ -219,7 +221,7 @@ impl<const M: usize> Base<M> {
         match self {
             Base::Mean(mean) => *mean,
             Base::Polynomial(corners, values) => {
-                // Beyond the fold of the map, far outside, the nearest corner has to do.
+                // Far outside, beyond the fold of the map, the nearest corner is used instead.
                 let xi = map::parent(corners, x).unwrap_or([0.5; 2]).map(|xi| xi.clamp(-1.0, 2.0));
                 combine(values, &nodal.at(xi[0]), &nodal.at(xi[1]))
             }
@@ -227,14 +229,14 @@ impl<const M: usize> Base<M> {
     }
 }
 
-/// Whether a cell is a parallelogram but for rounding.
+/// Whether a cell is a parallelogram, up to rounding.
 fn is_affine(corners: &Corners) -> bool {
     let [a, b, c, d] = corners;
     let size = (0..2).map(|i| (c[i] - a[i]).abs()).fold(0.0, f64::max);
     (0..2).all(|i| (a[i] - b[i] + c[i] - d[i]).abs() <= 1e-13 * size)
 }
 
-/// Parent coordinates of x by Newton's method from a guess that is off by how far the cell is from a parallelogram.
+/// Parent coordinates of x by Newton's method. The first guess is exact for a parallelogram.
 #[inline(always)]
 fn improved(corners: &Corners, x: [f64; 2], mut xi: [f64; 2]) -> [f64; 2] {
     for _ in 0..12 {
@@ -243,7 +245,7 @@ fn improved(corners: &Corners, x: [f64; 2], mut xi: [f64; 2]) -> [f64; 2] {
         let (det, rest) = (map::determinant(&k), [x[0] - at[0], x[1] - at[1]]);
         let step = [(k[1][1] * rest[0] - k[0][1] * rest[1]) / det, (k[0][0] * rest[1] - k[1][0] * rest[0]) / det];
         xi = [xi[0] + step[0], xi[1] + step[1]];
-        // Quadratic: what would follow is below rounding.
+        // Convergence is quadratic: the next change would be below rounding.
         if step[0].abs().max(step[1].abs()) < 1e-9 {
             break;
         }
@@ -251,12 +253,13 @@ fn improved(corners: &Corners, x: [f64; 2], mut xi: [f64; 2]) -> [f64; 2] {
     xi
 }
 
-/// Makes the totals exact. On cells that are no parallelograms U_old(X) is no polynomial, and its quadrature over the pieces
-/// of an old cell misses its integral by some 1e-10: each new cell gets its share of that. Where the grids do not
-/// cover the same region, totals of momentum and means of all else are restored for each material.
+/// Makes the totals exact. On cells that are no parallelograms U_old(X) is no polynomial, and its quadrature over the
+/// pieces of an old cell differs from its integral by some 1e-10. Each new cell gets its share of this difference. If
+/// the grids do not cover the same region, totals of momentum and means of everything else are restored for each
+/// material.
 ///
 /// # Errors
-/// Grids that differ by too much.
+/// The two grids differ by too much.
 pub(super) fn settle(old: &Grid, new: &Grid, field: &Field, shares: &[Share], out: &mut Transfer) -> Result<(), Error> {
     let n = field.basis.len() * field.basis.len();
     let stride = field.components * n;
@@ -297,16 +300,16 @@ fn refuse(uncovered: [f64; 2], whole: f64) -> Result<(), Error> {
         return Ok(());
     }
     let what = format!(
-        "the new grid does not fill the body: {:.3e} m^2 of it lie outside of the old grid, and it leaves out {:.3e} m^2 of {whole:.3e} m^2",
+        "the new grid is not a grid of the same body: {:.3e} m^2 of it lie outside of the old grid, and it does not cover {:.3e} m^2 of the old grid (area {whole:.3e} m^2)",
         uncovered[0], uncovered[1]
     );
     let remedy = format!(
-        "give a mesh of the same body in its initial configuration with the same groups; only edges of a curved boundary may differ, by {LARGEST_DIFFERENCE} of the area"
+        "give a mesh of the same body in its initial configuration with the same groups; only the edges at a curved boundary may differ, by at most {LARGEST_DIFFERENCE} of the area"
     );
     Err(Error::input(what, remedy))
 }
 
-/// Adds to each material's new cells (not to copies) the constants that restore its total momentum and its means.
+/// Adds constants to the new cells of each material (not to copies), so that its total momentum and its means are restored.
 fn restore(old: &Grid, new: &Grid, field: &Field, out: &mut Transfer) {
     let n = field.basis.len() * field.basis.len();
     let stride = field.components * n;

@@ -1,12 +1,14 @@
-//! From one grid to another (section 5, step 5 of the paper; recipe of the design, measured there).
+//! The transfer of a state from one grid to another (section 5, step 5 of the paper; by the recipe of the design, which was
+//! measured there).
 //!
-//! U_new = M^-1 sum over intersections of new and old cells of int Phi_a^new U_old dX: the L2 projection, which keeps the
-//! integral of every component and never raises that of its square, so that momentum and mean F stay and kinetic energy
-//! does not rise. Then F <- Pi F once ([`curl_free`]), where the curl of F is controlled. A new cell that equals an old one
-//! to the bit is copied and left alone. Internal variables are never projected: they stay at their points ([`points`]).
+//! U_new = M^-1 sum over intersections of new and old cells of int Phi_a^new U_old dX. This is the L2 projection. It
+//! keeps the integral of every component and never raises the integral of its square. So momentum and mean F stay, and
+//! kinetic energy does not rise. Then F <- Pi F once ([`curl_free`]), if the curl of F is controlled. A new cell that
+//! equals an old one to the bit is copied without change. Internal variables are never projected: they stay at their
+//! points ([`points`]).
 //!
-//! Not promised: the curl of F between cells and the strain energy are those of the projection; the latter is convex in F
-//! near F = 1, and falls there.
+//! Not controlled: the curl of F between cells and the strain energy are those of the projection. Strain energy is
+//! convex in F near F = 1, and falls there.
 
 mod clip;
 mod general;
@@ -24,8 +26,8 @@ use crate::step::{Relax, Scheme};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Where meshes of one body differ by more than this part of its area they are not of one body. A hole of radius r
-/// meshed with edges h differs by h^2/(12 r^2) of its own area.
+/// Two meshes that differ by more than this part of their area are not meshes of the same body. (A hole of radius r
+/// that is meshed with edges of length h differs from the circle by h^2/(12 r^2) of its area.)
 pub const LARGEST_DIFFERENCE: f64 = 0.02;
 
 /// A mesh with the number of the material of each cell; materials keep their numbers from grid to grid (by the names of
@@ -47,18 +49,18 @@ pub struct Field<'a> {
     pub components: usize,
     /// `[cell][component][node]`.
     pub u: &'a [f64],
-    /// What the square of a difference in each component counts in the error, for each material.
+    /// The weight of each component's squared difference in the error, for each material.
     pub scale: &'a [[f64; 8]],
 }
 
-/// What came over.
+/// The result of the transfer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transfer {
     /// The unknowns on the new grid, `[cell][component][node]`.
     pub u: Vec<f64>,
-    /// For each new cell the old one that it equals to the bit, whose unknowns it has.
+    /// For each new cell the old cell that it equals to the bit, if there is one. It has the unknowns of that cell.
     pub same: Vec<Option<usize>>,
-    /// Whether both grids are products of lines, so that nothing had to be clipped.
+    /// Whether both grids are products of lines, so that no cell was clipped.
     pub structured: bool,
     /// Area of the new grid that the old one does not cover, and of the old one that the new one does not, m^2.
     pub uncovered: [f64; 2],
@@ -66,29 +68,29 @@ pub struct Transfer {
     pub error: f64,
 }
 
-/// What a new cell adds to the sums.
+/// The share of a new cell in the sums.
 #[derive(Debug, Clone, Default)]
 struct Share {
     /// Squared error, as in [`Transfer::error`].
     error: f64,
     /// Area that no old cell of its material covers, m^2.
     uncovered: f64,
-    /// What it took of old cells.
+    /// What it got from each old cell.
     taken: Vec<Taken>,
 }
 
-/// What a new cell took of an old one.
+/// What a new cell got from an old cell.
 #[derive(Debug, Clone, Copy)]
 struct Taken {
     /// The old cell.
     old: usize,
     /// The area in common, m^2.
     area: f64,
-    /// int U_old over it, by quadrature.
+    /// int U_old over this area, by quadrature.
     total: [f64; 8],
 }
 
-/// For each new cell the old one of the same material with the same corners to the bit, in the same order.
+/// For each new cell the old cell of the same material whose corners are the same to the bit, in the same order.
 pub fn same_cells(old: &Grid, new: &Grid) -> Vec<Option<usize>> {
     let key = |grid: &Grid, cell: usize| (grid.mesh.corners(cell).map(|x| x.map(f64::to_bits)), grid.material[cell]);
     let by_key: HashMap<_, usize> = (0..old.mesh.cells.len()).map(|cell| (key(old, cell), cell)).collect();
@@ -129,8 +131,9 @@ fn with_nodes<const M: usize>(old: &Grid, new: &Grid, field: &Field) -> Result<T
     Ok(out)
 }
 
-/// F <- Pi F in the cells that are not copies, theta = 1, where F is controlled by this projection ([`Relax::Gradient`]). It
-/// turns rotations inside of a cell into strain, so that energy may rise; [`Relax::Rotation`] lets what is no gradient be.
+/// F <- Pi F in the cells that are not copies, with theta = 1, if F is controlled by this projection
+/// ([`Relax::Gradient`]). It turns rotations inside a cell into strain, so that energy may rise. With
+/// [`Relax::Rotation`] F is not changed here.
 pub fn curl_free(scheme: &Scheme, components: usize, same: &[Option<usize>], u: &mut [f64]) {
     let operators = &scheme.operators;
     let gradients = scheme.curl.is_some_and(|control| control.relax == Relax::Gradient);
@@ -160,7 +163,7 @@ fn integral(grid: &Grid, field: &Field, cell: usize, u: &[f64]) -> [f64; 8] {
     sum
 }
 
-/// Whether component k counts in F: its mean is kept, where the totals of the others are.
+/// Whether component k belongs to F. The mean of such a component is kept; of the others the total is kept.
 fn is_momentum(k: usize) -> bool {
     (4..UNKNOWNS).contains(&k)
 }

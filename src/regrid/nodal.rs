@@ -1,4 +1,4 @@
-//! The nodal basis at many points, without memory of its own.
+//! The nodal basis at many points, without allocation.
 
 use crate::basis::Lagrange;
 
@@ -14,7 +14,7 @@ pub(super) struct Nodal<const M: usize> {
 }
 
 impl<const M: usize> Nodal<M> {
-    /// Of a basis with M nodes.
+    /// The weights of a basis with M nodes.
     pub fn new(basis: &Lagrange) -> Self {
         let nodes: [f64; M] = std::array::from_fn(|k| basis.nodes[k]);
         let others = |k: usize| (0..M).filter(move |&j| j != k);

@@ -1,5 +1,5 @@
-//! Where material points go at a regrid: they stay where they are in X wherever the new cells can carry them, and so do
-//! their internal variables. New points take those of the nearest old point of their material; nothing is interpolated.
+//! Material points at a change of grid. They stay at their X, with their internal variables, if the new cells can carry
+//! them. New points take the internal variables of the nearest old point of their material. Nothing is interpolated.
 
 use super::Grid;
 use crate::cloud::{Cloud, Locator, locate::on_lattice};
@@ -16,10 +16,10 @@ names! {
     Policy {
         /// They stay where they are; a cell that cannot carry them gets points at its Gauss nodes instead.
         Keep = "keep",
-        /// As keep, but a cell with too few points gets more of the layout, and of more than twice as many as it needs those
-        /// stay that are nearest to its Gauss nodes.
+        /// As keep. But a cell with too few points gets additional points of the layout. A cell with more than twice as
+        /// many points as it needs keeps only those that are nearest to its Gauss nodes.
         Enrich = "enrich",
-        /// Cells that are new get the layout of the scene: congruent cells share their matrices.
+        /// New cells get the layout of the scene. Congruent cells then share their matrices.
         Layout = "layout",
     }
 }
@@ -29,17 +29,19 @@ names! {
 pub struct Placed {
     /// The points.
     pub cloud: Cloud,
-    /// For each the old point that it is, or that is nearest in X among those of its material; empty where nobody asks.
+    /// For each point an old point: the same point, or the nearest in X of its material. Empty if no law has internal
+    /// variables.
     pub source: Vec<usize>,
-    /// Whether it is that point itself.
+    /// For each point, whether it is that old point itself.
     pub kept: Vec<bool>,
-    /// Whether it is virtual, on a Gauss node of a cell that could not carry its points; empty: none is.
+    /// For each point, whether it is virtual: on a Gauss node of a cell whose points could not carry the degree. Empty:
+    /// none is.
     pub virtual_points: Vec<bool>,
-    /// Old points that lie outside of the new mesh, and are gone.
+    /// The number of old points that lie outside the new mesh and are lost.
     pub outside: usize,
 }
 
-/// What new cells are to carry.
+/// The settings for the points of the new cells.
 #[derive(Debug, Clone, Copy)]
 pub struct Demand<'a> {
     /// The nodal basis.
@@ -48,16 +50,16 @@ pub struct Demand<'a> {
     pub policy: Policy,
     /// Points of the scene's layout in all cells of the new mesh.
     pub fresh: &'a Cloud,
-    /// Whether the method samples at the points; else any points will do.
+    /// Whether the method samples at the points. If not, a cell may have any points.
     pub samples: bool,
-    /// What points may amplify before Gauss nodes take their place.
+    /// The limits for the points of a cell. Beyond them virtual points on the Gauss nodes replace the points.
     pub limits: &'a Limits,
-    /// Which of the old points are virtual, on Gauss nodes; empty: none.
+    /// Which of the old points are virtual, on Gauss nodes. An empty list: none.
     pub virtual_points: &'a [bool],
-    /// Whether a law has internal variables, whose sources are then looked for.
+    /// Whether a law has internal variables. Then an old point is found for each new point.
     pub histories: bool,
-    /// The new cells that sample on their Gauss nodes whatever their points are (laws with memory): nothing is asked of
-    /// their points; empty: none.
+    /// The new cells that sample on their Gauss nodes in any case (laws with memory). Their points need not carry the
+    /// degree. Empty: none.
     pub on_nodes: &'a [bool],
 }
 
@@ -65,9 +67,9 @@ pub struct Demand<'a> {
 #[derive(Debug, Clone, Copy)]
 struct Seat {
     xi: [f64; 2],
-    /// The old point that it is.
+    /// The old point, if it is one.
     old: Option<usize>,
-    /// Whether it stands on a Gauss node because the cell cannot carry its points.
+    /// Whether it is virtual: on a Gauss node, because the points of the cell cannot carry the degree.
     is_virtual: bool,
 }
 
@@ -80,7 +82,8 @@ pub fn place(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>], dema
         Policy::Layout => (of_layout(cloud, same, demand.fresh), 0),
         Policy::Keep | Policy::Enrich => stay(old, cloud, new, same),
     };
-    // A cell whose points are as they were is not looked at: what it could carry it can; nor one whose points carry nothing.
+    // Two kinds of cells are not checked: those whose points have not changed, which can carry what they could before;
+    // and those whose points need not carry the degree.
     let changed: Vec<bool> = seats
         .iter()
         .zip(same)
@@ -115,7 +118,7 @@ pub fn place(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>], dema
     Ok(out)
 }
 
-/// Copies keep their points; other cells have those of the layout.
+/// Cells that are copies keep their points. Other cells get the points of the layout.
 fn of_layout(cloud: &Cloud, same: &[Option<usize>], fresh: &Cloud) -> Vec<Vec<Seat>> {
     let of = |(cell, same): (usize, &Option<usize>)| match same {
         Some(twin) => own(cloud, *twin),
@@ -130,7 +133,7 @@ fn own(cloud: &Cloud, cell: usize) -> Vec<Seat> {
     numbered.map(|(&xi, point)| Seat { xi, old: Some(point), is_virtual: false }).collect()
 }
 
-/// All points where they are in X; how many lie outside of the new mesh.
+/// All points at their X in the new cells, and the number of points outside the new mesh.
 fn stay(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>]) -> (Vec<Vec<Seat>>, usize) {
     let mut stays = vec![false; old.mesh.cells.len()];
     let mut seats: Vec<Vec<Seat>> = vec![vec![]; same.len()];
@@ -148,7 +151,7 @@ fn stay(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>]) -> (Vec<V
     let locator = Locator::new(new.mesh);
     let find = |&(cell, point): &(usize, usize)| {
         let found = locator.find(map::position(&old.mesh.corners(cell), cloud.xi[point]))?;
-        // On an edge between two materials a point stays with its own: the cell that has it is the lowest there.
+        // A point on an edge between two materials stays in its own material: in the lowest cell of that material there.
         (new.material[found.0] == old.material[cell]).then_some((found, point))
     };
     let found: Vec<_> = moving.par_iter().map(find).collect();
@@ -160,7 +163,7 @@ fn stay(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>]) -> (Vec<V
 
 /// Changed cells whose points cannot carry Q_N.
 fn poor(seats: &[Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand) -> Result<Vec<usize>, Error> {
-    // Of the others one point is enough to be no work.
+    // For the other cells a list of one point is enough and makes no work.
     let look = |cell: usize| if changed[cell] { &seats[cell][..] } else { &[] };
     let mut cloud = Cloud { first: vec![0], xi: vec![] };
     for cell in 0..seats.len() {
@@ -176,12 +179,12 @@ fn carries(certificate: &Certificate, demand: &Demand) -> bool {
     demand.limits.cause(certificate, demand.line.m * demand.line.m).is_none()
 }
 
-/// Adds points of the layout where there are too few; where there are too many, those nearest to the Gauss nodes stay (they
-/// amplify least at the faces).
+/// Adds points of the layout if there are too few. If there are too many, those nearest to the Gauss nodes stay,
+/// because they amplify errors least at the faces.
 fn enrich(seats: &mut [Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand) -> Result<(), Error> {
     let gap = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
     for cell in poor(seats, changed, new, demand)? {
-        // Half of the spacing of the layout: where a point is that near, another would only be its double.
+        // Half of the spacing of the layout. A point of the layout that is nearer than this to a present point adds nothing.
         let near = 0.5 / (demand.fresh.of(cell).len() as f64).sqrt();
         for &xi in demand.fresh.of(cell) {
             if seats[cell].iter().all(|seat| gap(seat.xi, xi) > near) {
@@ -212,7 +215,7 @@ fn enrich(seats: &mut [Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand
     Ok(())
 }
 
-/// The old point that each is, or that is nearest.
+/// For each point the old point that it is, or the nearest old point.
 fn sources(old: &Grid, cloud: &Cloud, new: &Grid, seats: &[Vec<Seat>]) -> Result<Vec<usize>, Error> {
     let is_new = |seats: &Vec<Seat>| seats.iter().any(|seat| seat.old.is_none());
     let trees = if seats.iter().any(is_new) { trees(old, cloud) } else { vec![] };
@@ -242,8 +245,8 @@ fn trees(old: &Grid, cloud: &Cloud) -> Vec<RTree<GeomWithData<[f64; 2], usize>>>
     points.into_iter().map(RTree::bulk_load).collect()
 }
 
-/// Internal variables of the new points, cells in the order of the mesh, points in that of the cloud: `internal` has those of
-/// the old `places` in that order, `count` the number of variables of each material.
+/// Internal variables of the new points: cells in the order of the mesh, points in the order of the cloud. `internal`
+/// has those of the old `places` in this order; `count` is the number of variables of each material.
 pub fn histories(old: &Grid, places: &Cloud, placed: &Placed, internal: &[f64], count: &[usize]) -> Vec<f64> {
     let mut ranges = Vec::with_capacity(places.len());
     let mut next = 0;

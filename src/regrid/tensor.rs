@@ -1,4 +1,4 @@
-//! Between grids of axis-aligned rectangles: products of 1D matrices, no clipping.
+//! The projection between two grids of axis-aligned rectangles, by products of 1D matrices, without clipping.
 
 use super::nodal::{Nodal, Values, combine, gather, scatter, spread};
 use super::{Field, Grid, Share};
@@ -6,7 +6,7 @@ use crate::basis::Lagrange;
 use crate::mesh::{Mesh, map};
 use rayon::prelude::*;
 
-/// Lines nearer than this part of the extent are one: rounding of coordinates.
+/// Lines that are nearer to each other than this part of the extent count as one line, because coordinates are rounded.
 const SAME_LINE: f64 = 1e-13;
 
 /// A mesh that is the product of two lists of lines.
@@ -16,14 +16,14 @@ pub struct TensorGrid {
     pub lines: [Vec<f64>; 2],
     /// The cell between lines ix, ix + 1 and iy, iy + 1 at `ix + nx iy`.
     cells: Vec<usize>,
-    /// Per cell ix + nx iy.
+    /// For each cell its number ix + nx iy.
     place: Vec<usize>,
-    /// Per cell which of its corners is the lower left one.
+    /// For each cell the number of its lower left corner.
     turn: Vec<u8>,
 }
 
 impl TensorGrid {
-    /// Looks at the geometry; none where it is no such grid.
+    /// The lines of a mesh; `None` if the mesh is no such grid.
     pub fn of(mesh: &Mesh) -> Option<Self> {
         let lines = [0, 1].map(|axis| lines(mesh, axis));
         let [nx, ny] = [lines[0].len().checked_sub(1)?, lines[1].len().checked_sub(1)?];
@@ -57,7 +57,7 @@ impl TensorGrid {
         Some(out)
     }
 
-    /// Whether both fill the same rectangle.
+    /// Whether both grids fill the same rectangle.
     pub fn covers(&self, other: &Self) -> bool {
         (0..2).all(|axis| {
             let ends = |lines: &[f64]| [lines[0], lines[lines.len() - 1]];
@@ -101,7 +101,7 @@ fn lines(mesh: &Mesh, axis: usize) -> Vec<f64> {
     all
 }
 
-/// What a new interval and an old one have in common.
+/// The common part of a new interval and an old interval.
 #[derive(Debug, Clone)]
 struct Overlap<const M: usize> {
     old: usize,
@@ -113,7 +113,7 @@ struct Overlap<const M: usize> {
     new_at: [[f64; M]; M],
 }
 
-/// For each new interval what it has in common with old ones: M points are exact for products of degree 2 M - 1.
+/// For each new interval its common parts with old intervals. M points are exact for products of degree 2 M - 1.
 fn overlaps<const M: usize>(nodal: &Nodal<M>, basis: &Lagrange, old: &[f64], new: &[f64]) -> Vec<Vec<Overlap<M>>> {
     let near = slack(old);
     let of = |ends: &[f64]| {
@@ -129,7 +129,7 @@ fn overlaps<const M: usize>(nodal: &Nodal<M>, basis: &Lagrange, old: &[f64], new
                 }
                 continue;
             }
-            // Relative to the interval first: where two are the same, both have the nodes of the basis, to the bit.
+            // First relative to the interval: if both intervals are equal, both get the nodes of the basis, to the bit.
             let inside = |start: f64, length: f64, q: usize| {
                 ((low - start) / length + (high - low) / length * basis.nodes[q]).clamp(0.0, 1.0)
             };
@@ -145,8 +145,8 @@ fn overlaps<const M: usize>(nodal: &Nodal<M>, basis: &Lagrange, old: &[f64], new
     new.windows(2).map(of).collect()
 }
 
-/// Projects `field` onto the new cells that `same` does not name; none where the two grids are no such grids, or do not
-/// fill the same rectangle with the same materials. Fills `u` and gives each cell's share of the error.
+/// Projects `field` onto the new cells that `same` does not name. Fills `u` and gives each cell's share of the error.
+/// `None` if one of the two is no such grid, or if they do not fill the same rectangle with the same materials.
 pub(super) fn project<const M: usize>(
     old: &Grid,
     new: &Grid,
@@ -232,7 +232,7 @@ impl<const M: usize> Job<'_, M> {
 }
 
 impl Share {
-    /// Adds the distance of two values in the weights of the components.
+    /// Adds the squared distance of two values, weighted by component.
     #[inline(always)]
     pub(super) fn add(&mut self, weight: f64, before: &Values, after: &Values, scale: &Values) {
         let mut sum = 0.0;

@@ -27,7 +27,7 @@ impl Riemann for Rusanov {
         flux
     }
 
-    /// In jumps alone: -c/2 [F] - 1/2 [v] (x) N for the rows of F. The scale stands in what is the same for all rows.
+    /// In jumps alone: `-c/2 [F] - 1/2 [v] (x) N` for the rows of F. The scale stands in what is the same for all rows.
     #[inline(always)]
     fn lifted<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>, scale: L) -> [L; 6] {
         let half = L::splat(-0.5) * scale;

@@ -20,7 +20,7 @@ pub struct Survey {
     pub speed: Vec<Speeds>,
     /// The largest of all, m/s.
     pub fastest: f64,
-    /// The smallest J at all places where it is looked at: material points, grid nodes, face points, see [`health`].
+    /// The smallest J at all places where it is looked at: material points, grid nodes, face points, see `step::health`.
     pub min_j: f64,
 }
 

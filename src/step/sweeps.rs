@@ -2,7 +2,7 @@
 
 use crate::basis::{Lagrange, TimeBasis};
 
-/// One sweep: u_s = U^n + dt ( sum_k W[s][k] r_k + rho0 sum_k B[s][k] b_k ) at its time nodes s, from the rates r_k at
+/// One sweep: u_s = U^n + dt ( sum_k `W[s][k]` r_k + rho0 sum_k `B[s][k]` b_k ) at its time nodes s, from the rates r_k at
 /// the nodes of the sweep before and the accelerations b_k at the N_T + 1 time nodes of the scheme.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
@@ -24,9 +24,9 @@ pub struct Sweeps {
     pub inner: Vec<Sweep>,
     /// The last, of which the time averages are taken.
     pub last: Sweep,
-    /// sum_s w_s W[s][k] of the last: the time average of u itself.
+    /// sum_s w_s `W[s][k]` of the last: the time average of u itself.
     pub mean_rates: Vec<f64>,
-    /// sum_s w_s B[s][k] of the last.
+    /// sum_s w_s `B[s][k]` of the last.
     pub mean_sources: Vec<f64>,
 }
 
@@ -46,7 +46,7 @@ impl Sweeps {
     }
 
     /// The ladder (design section 3, not in the paper), for N_T = N: sweep j of N maps j Gauss nodes to j + 1 by
-    /// W[s][k] = int_0^tau_s l_k of the j-node rule. (N + 1)(N + 2)/2 evaluations of the law at a point. For a linear law
+    /// `W[s][k]` = int_0^tau_s l_k of the j-node rule. (N + 1)(N + 2)/2 evaluations of the law at a point. For a linear law
     /// it gives what the paper's sweeps give when they are stopped after N.
     pub fn ladder(time: &TimeBasis) -> Self {
         let len = time.len();

@@ -7,7 +7,7 @@ use super::kinds::Kind;
 use super::{Element, Raw};
 use crate::mesh::{BoundaryEdge, Mesh};
 
-/// Largest |z| that is taken for 0, in parts of the extent in x and y: rounding of a rotated or computed plane.
+/// Largest |z| that counts as 0, relative to the extent in x and y: it allows for rounding in a rotated or computed plane.
 const FLAT: f64 = 1e-10;
 
 /// The mesh of the quadrilaterals of a file, checked and oriented.
@@ -29,13 +29,14 @@ pub fn mesh(mut raw: Raw) -> Result<Mesh, Error> {
         original: raw.quads.iter().map(|quad| quad.number).collect(),
     };
     let mut mesh = mesh.checked()?;
-    // After the check, which may have turned cells.
+    // Only after the check, because the check may turn cells.
     mesh.edges.sort_unstable_by_key(|edge| (edge.group, edge.cell, edge.face));
     mesh.edges.dedup();
     Ok(mesh)
 }
 
-/// Refuses elements that are no first-order quadrilaterals, lines or points: first solids, then higher orders, then triangles.
+/// An error if there are elements that are no first-order quadrilaterals, lines or points: first solids, then higher
+/// orders, then triangles.
 fn usable(raw: &Raw) -> Result<(), Error> {
     let refused = raw.refused.iter().filter_map(|(&kind, &(count, first))| Some((Kind::of(kind)?, count, first)));
     match refused.max_by_key(|(kind, _, _)| (kind.dimension == 3, kind.order, kind.dimension)) {
@@ -147,7 +148,8 @@ fn groups(raw: &Raw, dimension: i32, used: impl Iterator<Item = i32>) -> (Vec<St
     (names, index)
 }
 
-/// Names of the boundary groups, and the faces that the lines of physical curves are; of an inner edge the lower cell's.
+/// Names of the boundary groups, and for each line of a physical curve its face. For an inner edge it is the face of
+/// the cell with the lower index.
 fn edges(
     raw: &Raw,
     nodes: &[(u64, [f64; 3])],

@@ -6,7 +6,7 @@ use super::kinds::Kind;
 use crate::error::Place;
 use crate::mesh;
 
-/// Where in the file.
+/// A place in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum At {
     /// Line and column, from 1, of a text file.
@@ -18,14 +18,14 @@ pub enum At {
 /// An MSH file that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// Something else stands where the format has a certain thing.
+    /// The file has something else at a place where the format requires a certain item.
     #[error("{expected} expected, but {found}")]
     Syntax {
-        /// Where.
+        /// The place in the file.
         at: At,
-        /// What the format has here.
+        /// What the format requires here.
         expected: String,
-        /// What stands here.
+        /// What the file has here.
         found: String,
     },
     /// Not an MSH file at all.
@@ -43,7 +43,7 @@ pub enum Error {
     /// Elements that are not first-order quadrilaterals, lines or points.
     #[error("{count} element(s) are {}, the first is element {first}", .kind.name)]
     Element {
-        /// Their kind.
+        /// The kind of the elements.
         kind: Kind,
         /// How many.
         count: usize,
@@ -72,7 +72,7 @@ pub enum Error {
     /// A curve or surface, or an element, in several physical groups.
     #[error("{what} belongs to several physical groups: {}", .names.join(", "))]
     ManyGroups {
-        /// Which.
+        /// The curve, surface or element.
         what: String,
         /// Names of the groups.
         names: Vec<String>,
@@ -114,7 +114,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// What would be right.
+    /// How to correct it.
     pub fn remedy(&self) -> String {
         let text = match self {
             Error::Syntax { .. } => "the file is damaged or cut off: save it again from Gmsh as MSH 4.1 or 2.2",

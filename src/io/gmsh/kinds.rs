@@ -1,11 +1,11 @@
-//! Gmsh's element types: those that are read, and what to say about the others.
+//! Gmsh's element types: which are read, and what a message says about the others.
 
 /// An element type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Kind {
     /// Gmsh's number.
     pub number: i32,
-    /// What it is, in the plural.
+    /// Its name in messages, in the plural.
     pub name: &'static str,
     /// Dimension, 0 to 3.
     pub dimension: u8,
@@ -72,7 +72,7 @@ impl Kind {
         KINDS.into_iter().find(|kind| kind.number == number)
     }
 
-    /// Whether elements of this kind are read or rightly ignored.
+    /// Whether a file may have elements of this kind: they are read, or can be ignored without loss.
     pub fn usable(&self) -> bool {
         [LINE, QUAD, POINT].contains(&self.number)
     }

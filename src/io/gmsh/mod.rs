@@ -1,7 +1,7 @@
 //! Gmsh's MSH files, versions 2.2 and 4.1, ascii and binary: first-order quadrilaterals in the plane z = 0, groups
 //! by physical surfaces and curves. The format is that of the Gmsh reference manual, chapter "Gmsh file formats".
 //!
-//! What cannot be computed on is refused with the element's number and the Gmsh option that mends it. Nodes that no
+//! An element that the program cannot use is an error, with its number and the Gmsh option that helps. Nodes that no
 //! quadrilateral uses are dropped; lines in no physical curve and points are ignored.
 
 mod assemble;
@@ -40,7 +40,7 @@ pub fn parse(bytes: &[u8]) -> std::result::Result<Mesh, Error> {
     assemble::mesh(sections::read(bytes)?)
 }
 
-/// What a file holds, before it is a mesh. Groups are physical tags, 0 for none.
+/// The contents of a file, before they are made into a mesh. Groups are physical tags; 0 means no group.
 #[derive(Debug, Default)]
 struct Raw {
     /// Names of physical groups by dimension and tag, in the order of tags.

@@ -11,7 +11,7 @@ enum Version {
     V41,
 }
 
-/// All sections that matter; others are skipped.
+/// All sections that are read; others are skipped.
 pub fn read(bytes: &[u8]) -> Result<Raw, Error> {
     let mut source = Source::new(bytes);
     let version = header(&mut source)?;
@@ -98,7 +98,7 @@ fn section(source: &mut Source) -> Result<String, Error> {
             if source.line().is_empty() {
                 return Ok(name);
             }
-            // Only now: the place of an error is found by counting all lines before it.
+            // Only in case of an error: to find its line, all lines before it are counted.
             Err(source.wrong(format!("the end of the line after `${name}`")))
         }
         _ => Err(source.wrong("a section such as `$Nodes`")),

@@ -8,7 +8,7 @@ use super::error::{At, Error};
 pub struct Source<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Where the thing that was read last begins, for messages.
+    /// The start of the last number or word that was read, for messages.
     mark: usize,
     /// Whether numbers are binary (little-endian) from here on.
     pub binary: bool,
@@ -43,7 +43,7 @@ impl<'a> Source<'a> {
         word
     }
 
-    /// What is left of the line, and past its end.
+    /// Returns the rest of the line, and moves to the next line.
     pub fn line(&mut self) -> &'a [u8] {
         self.mark = self.at;
         let rest = self.rest();
@@ -52,7 +52,7 @@ impl<'a> Source<'a> {
         rest[..length].trim_ascii()
     }
 
-    /// Past the end of the next line that reads `$End` and the name: the end of a section that is not read.
+    /// Moves to the line after the next `$End` with this name: skips a section that is not read.
     pub fn skip_section(&mut self, name: &str) -> Result<(), Error> {
         let end = format!("\n$End{name}").into_bytes();
         self.mark = self.at;
@@ -68,7 +68,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// A number of text, whatever the file.
+    /// A number that is written as text, in text and binary files.
     pub fn number<T: FromStr>(&mut self, what: &str) -> Result<T, Error> {
         let text = std::str::from_utf8(self.word()).ok();
         text.and_then(|text| text.parse().ok()).ok_or_else(|| self.wrong(what))
@@ -96,8 +96,8 @@ impl<'a> Source<'a> {
         if self.binary { Ok(f64::from_le_bytes(self.take(what)?)) } else { self.number(what) }
     }
 
-    /// A `count` that was just read, if the rest of the file can hold as many things of so many numbers each.
-    /// `bytes` is the size of one in a binary file; in a text file each number takes 2 bytes or more.
+    /// A `count` of items that was just read, if the rest of the file is long enough for so many items. `bytes` is the
+    /// size of an item in a binary file; in a text file each number of an item takes 2 bytes or more.
     pub fn fits(&self, count: u64, numbers: usize, bytes: usize, what: &str) -> Result<usize, Error> {
         let each = if self.binary { bytes } else { 2 * numbers };
         // One more: the last number of a text file may stand without a blank behind it.
@@ -111,7 +111,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The error that something else was expected where the last thing was read.
+    /// The error: at the place of the last number or word, the format has something else.
     pub fn wrong(&self, expected: impl Into<String>) -> Error {
         let rest = &self.bytes[self.mark..];
         let shown = &rest[..rest.iter().take(30).take_while(|&&b| b != b'\n').count()];

@@ -27,7 +27,7 @@ pub fn nodes(source: &mut Source, raw: &mut Raw, parametric: bool) -> Result<(),
     Ok(())
 }
 
-/// What a parametric node has behind its coordinates; nothing of it is kept.
+/// Skips the entries of a parametric node after its coordinates.
 fn parameters(source: &mut Source) -> Result<(), Error> {
     let count = match source.int("the dimension of an entity")? {
         0 | 3 => 0,

@@ -26,7 +26,7 @@ pub fn entities(source: &mut Source, raw: &mut Raw, entities: &mut Entities) -> 
     Ok(())
 }
 
-/// The same for the parts of a partitioned mesh, where each entity begins with `tag parent-dimension parent-tag
+/// The entities of a partitioned mesh. Each entity begins with `tag parent-dimension parent-tag
 /// number-of-partitions partitions..`.
 pub fn partitioned_entities(source: &mut Source, raw: &mut Raw, entities: &mut Entities) -> Result<(), Error> {
     source.size("the number of partitions")?;

@@ -1,7 +1,7 @@
 //! XDMF with HDF5 beside it, for ParaView, VTK, meshio and DOLFINx.
 //!
-//! XDMF knows bilinear quadrilaterals best, so each cell of degree N is split into N x N of them on its own (N + 1)^2
-//! equispaced nodes: [`Series`] writes those with their fields in time. [`write_mesh`] writes the mesh alone, with
+//! Most readers of XDMF know only bilinear quadrilaterals. So each cell of degree N is split into N x N of them on its own
+//! (N + 1)^2 equispaced nodes: [`Series`] writes those with their fields in time. [`write_mesh`] writes the mesh alone, with
 //! shared nodes. The numbers of `name.xdmf` are in `name.h5`, as DOLFINx expects.
 
 mod mesh;
@@ -21,7 +21,7 @@ use crate::error::{Error, Result};
 
 /// XML is written into memory.
 type Xml = Writer<Vec<u8>>;
-/// What the writing of XML gives.
+/// The result of writing XML.
 type Written = std::io::Result<()>;
 
 /// Path of the HDF5 file beside an XDMF file. A store of the pipeline (such as `mesh.h5` of a run) is never replaced.
@@ -36,7 +36,7 @@ fn companion(path: &Path) -> Result<PathBuf> {
     Ok(h5)
 }
 
-/// A document: what `fill` writes inside of the domain.
+/// A document; `fill` writes the contents of its domain.
 fn write_document(path: &Path, fill: impl FnOnce(&mut Xml) -> Written) -> Result<()> {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     let root = [("Version", "3.0"), ("xmlns:xi", "http://www.w3.org/2001/XInclude")];
@@ -49,7 +49,7 @@ fn write_document(path: &Path, fill: impl FnOnce(&mut Xml) -> Written) -> Result
     write_text(path, &(text + "\n"))
 }
 
-/// Where an array stands in the HDF5 file, and what it is.
+/// An array in the HDF5 file: its place, shape and type.
 struct Item<'a> {
     file: &'a str,
     name: &'a str,

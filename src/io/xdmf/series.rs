@@ -1,5 +1,5 @@
-//! Fields in time: the uniform grid `mesh`, then a temporal collection that includes it. Times after a regrid have a
-//! uniform grid of their own in its place, which VTK reads; readers that know one grid a series (meshio) do not.
+//! Fields in time: the uniform grid `mesh`, then a temporal collection that includes it. Times after a regrid have their own
+//! uniform grid instead. VTK reads such a series; readers that expect one grid in a series (meshio) do not.
 
 use std::path::{Path, PathBuf};
 
@@ -15,14 +15,14 @@ pub struct Series {
     h5: PathBuf,
     file: hdf5_metno::File,
     pending: Pending,
-    /// Cells and points of the grids, the one in use last.
+    /// Cells and points of the grids. The last grid is the one in use.
     grids: Vec<(usize, usize)>,
     /// Sub-quadrilaterals of each cell.
     split: usize,
     steps: Vec<Step>,
 }
 
-/// A time, and what stands in the HDF5 file for it.
+/// A time, and its arrays in the HDF5 file.
 struct Step {
     time: f64,
     /// The number of its grid.
@@ -40,7 +40,7 @@ struct Stored {
 }
 
 impl Series {
-    /// Starts a series on the points and cells of a grid (its fields are not looked at).
+    /// Starts a series on the points and cells of a grid. The fields of the grid are ignored.
     pub fn create(path: &Path, grid: &HighOrderGrid) -> Result<Self> {
         grid.check()?;
         let h5 = companion(path)?;
@@ -53,7 +53,7 @@ impl Series {
         Ok(series)
     }
 
-    /// Goes on with another grid of the same degree.
+    /// Continues the series on another grid of the same degree.
     pub fn regrid(&mut self, grid: &HighOrderGrid) -> Result<()> {
         grid.check()?;
         let name = name_of(self.grids.len());
@@ -95,7 +95,7 @@ impl Series {
         Ok(written)
     }
 
-    /// Gives both files their names.
+    /// Finishes both files and gives them their names.
     pub fn finish(self) -> Result<()> {
         let Self { path, h5, pending, file, grids, split, steps } = self;
         file.flush().and_then(|()| file.close()).map_err(|e| Error::output(&h5, hdf5::reason(&e)))?;
