@@ -10,7 +10,7 @@ pub const UNKNOWNS: usize = 6;
 ///
 /// Layout: `[block][component][node]`, node a = i M + j with i along xi1. Components are the six of U and, where an
 /// output asks for it or the flux holds its jumps ([`crate::riemann::hold`]), the displacement u1, u2 (m): du/dt = v.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct State {
     /// Time t, s.
     pub time: f64,

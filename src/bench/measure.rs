@@ -7,7 +7,7 @@ use crate::exact::errors;
 use crate::run::dofs;
 use crate::state::State;
 use crate::step::phase::PHASES;
-use crate::step::{Loss, Phases, Survey, Work};
+use crate::step::{Loss, Motion, Phases};
 use cpu_time::ProcessTime;
 use std::time::{Duration, Instant};
 
@@ -70,10 +70,7 @@ impl Measured {
 /// The steps of a problem and what they have cost so far.
 struct Clocked<'a> {
     problem: &'a Problem,
-    state: State,
-    survey: Survey,
-    next: Survey,
-    work: Work,
+    motion: Motion,
     quietest: Phases,
     steps: usize,
     cpu: Duration,
@@ -83,19 +80,18 @@ struct Clocked<'a> {
 impl Clocked<'_> {
     /// Back to the start.
     fn rewind(&mut self) -> std::result::Result<(), Loss> {
-        self.state.clone_from(&self.problem.start);
-        self.problem.scheme.survey(&self.state, &self.work, &mut self.survey)
+        let Motion { state, survey, work, .. } = &mut self.motion;
+        state.clone_from(&self.problem.start);
+        self.problem.scheme.survey(state, work, survey)
     }
 
     /// One step and its survey; the last one of a wave ends at its end.
     fn step(&mut self) -> std::result::Result<(), Loss> {
         let Problem { scheme, settings, h, .. } = self.problem;
-        let dt = (settings.courant * h / self.survey.fastest).min(settings.end - self.state.time);
-        scheme.step(&self.state, dt, &self.survey, &mut self.work);
-        scheme.surveyed(&mut self.work, &mut self.next)?;
-        std::mem::swap(&mut self.state, &mut self.work.next);
-        std::mem::swap(&mut self.survey, &mut self.next);
-        let phases = self.work.take_phases();
+        let Motion { state, survey, .. } = &self.motion;
+        let dt = (settings.courant * h / survey.fastest).min(settings.end - state.time);
+        self.motion.advance(scheme, dt)?;
+        let phases = self.motion.work.take_phases();
         self.quietest.seconds.iter_mut().zip(phases.seconds).for_each(|(least, s)| *least = least.min(s));
         self.steps += 1;
         Ok(())
@@ -103,7 +99,7 @@ impl Clocked<'_> {
 
     /// Whether the wave has run its way, to the rounding of its sum of steps.
     fn is_through(&self) -> bool {
-        self.state.time >= self.problem.settings.end * (1.0 - 1e-12)
+        self.motion.state.time >= self.problem.settings.end * (1.0 - 1e-12)
     }
 
     /// Timed steps until the wave is through or the length is reached; whether it is reached.
@@ -133,15 +129,11 @@ const UNKNOWN: Phases = Phases { seconds: [f64::INFINITY; PHASES] };
 /// Threads that cannot be started; a wave that loses stability.
 pub fn measure(problem: &Problem, threads: usize, length: Length) -> Result<Measured> {
     pool(threads)?.install(|| {
-        let work = Work::new(&problem.scheme, &problem.start);
-        let (survey, zero) = (Survey::default(), Duration::ZERO);
-        let state = problem.start.clone();
-        let next = survey.clone();
-        let mut clocked =
-            Clocked { problem, state, survey, next, work, quietest: UNKNOWN, steps: 0, cpu: zero, wall: zero };
+        let (motion, zero) = (Motion::unsurveyed(&problem.scheme, problem.start.clone()), Duration::ZERO);
+        let mut clocked = Clocked { problem, motion, quietest: UNKNOWN, steps: 0, cpu: zero, wall: zero };
         let mut end = None;
         let outcome = steps(&mut clocked, length, &mut end);
-        outcome.map_err(|loss| unstable(&loss, &clocked.state))?;
+        outcome.map_err(|loss| unstable(&loss, &clocked.motion.state))?;
         Ok(finish(clocked, threads, end.as_ref()))
     })
 }
@@ -151,22 +143,22 @@ fn steps(clocked: &mut Clocked, length: Length, end: &mut Option<State>) -> std:
     clocked.rewind()?;
     clocked.step()?;
     clocked.rewind()?;
-    clocked.work.take_phases();
+    clocked.motion.work.take_phases();
     (clocked.steps, clocked.quietest) = (0, UNKNOWN);
     while !clocked.pass(length)? {
-        end.get_or_insert_with(|| clocked.state.clone());
+        end.get_or_insert_with(|| clocked.motion.state.clone());
         clocked.rewind()?;
         // The survey of the start belongs to no step.
-        clocked.work.take_phases();
+        clocked.motion.work.take_phases();
     }
     Ok(())
 }
 
 fn finish(clocked: Clocked, threads: usize, end: Option<&State>) -> Measured {
     let Problem { scheme, mesh, wave, material, points, .. } = clocked.problem;
-    let error = errors(wave, mesh, scheme, end.unwrap_or(&clocked.state), material).standard;
+    let error = errors(wave, mesh, scheme, end.unwrap_or(&clocked.motion.state), material).standard;
     let phases = Phases { seconds: clocked.quietest.seconds.map(|s| s * clocked.steps as f64) };
-    let state = size_of_val(&clocked.state.u[..]);
+    let state = size_of_val(&clocked.motion.state.u[..]);
     Measured {
         threads,
         dofs: dofs(scheme),
@@ -177,7 +169,7 @@ fn finish(clocked: Clocked, threads: usize, end: Option<&State>) -> Measured {
         cpu: clocked.cpu.as_secs_f64(),
         wall: clocked.wall.as_secs_f64(),
         phases,
-        bytes: scheme.operators.bytes() + clocked.work.bytes() + state,
+        bytes: scheme.operators.bytes() + clocked.motion.work.bytes() + state,
         error,
     }
 }

@@ -11,7 +11,7 @@ use crate::operators::{Certificate, Pool};
 use crate::run::{Kept, Settings};
 use crate::scene::Scene;
 use crate::state::State;
-use crate::step::{Loss, Scheme, Survey, Work, cfl};
+use crate::step::{Loss, Motion, Scheme, Survey, cfl};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -136,20 +136,17 @@ struct Cost {
 
 /// The first step size, and the time of the run from two trial steps on a copy of the state.
 fn cost(scheme: &Scheme, state: &State, settings: Settings, h: f64) -> std::result::Result<Cost, Loss> {
-    let mut work = Work::new(scheme, state);
-    let mut survey = Survey::default();
-    scheme.survey_all(state, &work, &mut survey)?;
-    let dt = settings.courant * h / survey.fastest;
+    let mut motion = Motion::new(scheme, state.clone())?;
+    let dt = settings.courant * h / motion.survey.fastest;
     let steps = ((settings.end - state.time) / dt).ceil();
     let mut trial = || {
         let clock = Instant::now();
-        scheme.step(state, dt, &survey, &mut work);
         // What becomes of the first step is for the run to say.
-        let _ = scheme.surveyed(&mut work, &mut survey.clone());
+        let _ = motion.attempt(scheme, dt);
         clock.elapsed().as_secs_f64()
     };
     // The first trial touches the memory for the first time.
     let _ = trial();
     let seconds = trial() * steps;
-    Ok(Cost { survey, dt, steps, seconds, work: work.bytes() })
+    Ok(Cost { work: motion.work.bytes(), survey: motion.survey, dt, steps, seconds })
 }

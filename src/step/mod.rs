@@ -17,6 +17,7 @@ mod finish;
 mod flux;
 mod health;
 pub mod history;
+mod motion;
 mod outside;
 pub mod phase;
 mod predictor;
@@ -35,6 +36,7 @@ pub use curl::Control;
 pub use energy::{EnergyMade, Totals};
 pub use health::Site;
 pub use history::Histories;
+pub use motion::Motion;
 pub use phase::{Phase, Phases};
 pub use runge_kutta::Tableau;
 pub use survey::{Loss, LossKind, Speeds, Survey};
@@ -182,15 +184,21 @@ impl Method {
 }
 
 impl Scheme {
-    /// Advances `state` by `dt` into `work.next`. `survey` is that of `state`; [`Scheme::surveyed`] has that of the result.
-    pub fn step(&self, state: &State, dt: f64, survey: &Survey, work: &mut Work) {
+    /// Advances `state`, whose survey this is, by `dt` into `work.next`; [`Scheme::surveyed`] has the survey of the result.
+    /// [`Motion`] does both.
+    pub(crate) fn step(&self, state: &State, dt: f64, survey: &Survey, work: &mut Work) {
+        self.step_to(state, survey, dt, state.time + dt, work);
+    }
+
+    /// The same; the time of the result is `time`: t + dt, but for a rounding.
+    fn step_to(&self, state: &State, survey: &Survey, dt: f64, time: f64, work: &mut Work) {
         match &self.method {
-            Method::Ader { time, .. } => {
+            Method::Ader { time: basis, .. } => {
                 let node = |(tau, weight): (&f64, &f64)| TimeNode { time: state.time + tau * dt, weight: *weight };
                 // At most 7 nodes: on the stack, no allocation in a step.
                 let mut times = [TimeNode { time: 0.0, weight: 0.0 }; 8];
-                times.iter_mut().zip(time.tau.iter().zip(&time.weights)).for_each(|(t, n)| *t = node(n));
-                let times = &times[..time.len()];
+                times.iter_mut().zip(basis.tau.iter().zip(&basis.weights)).for_each(|(t, n)| *t = node(n));
+                let times = &times[..basis.len()];
                 self.run_stages(&[Stage { number: 0, times, dt }], state, survey, work);
             }
             Method::RungeKutta(tableau) => {
@@ -200,7 +208,7 @@ impl Scheme {
                 self.run_stages(&stages[..tableau.stages()], state, survey, work);
             }
         }
-        work.next.time = state.time + dt;
+        work.next.time = time;
         work.next.step = state.step + 1;
     }
 

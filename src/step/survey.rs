@@ -161,7 +161,7 @@ impl Scheme {
     ///
     /// # Errors
     /// As [`Scheme::survey`].
-    pub fn surveyed(&self, memory: &mut Memory, out: &mut Survey) -> Result<(), Loss> {
+    pub(crate) fn surveyed(&self, memory: &mut Memory, out: &mut Survey) -> Result<(), Loss> {
         std::mem::swap(&mut out.speed, &mut memory.speed);
         memory.speed.resize(out.speed.len(), Speeds::default());
         self.judge(memory.tiles.worst(), &memory.next, out)
