@@ -2,9 +2,10 @@
 
 use crate::lane::F8;
 use crate::operators::Blocks;
+use crate::tensor::{AXES, DEFORMATION};
 
 /// Components of U = (F11, F12, F21, F22, p1, p2).
-pub const UNKNOWNS: usize = 6;
+pub const UNKNOWNS: usize = DEFORMATION + AXES;
 
 /// The grid unknowns at the Gauss nodes, the master copy between steps.
 ///

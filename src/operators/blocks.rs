@@ -100,7 +100,8 @@ impl Blocks {
 
     fn plan_of(&mut self, block: usize, face: usize) -> Plan {
         let lanes = self.neighbours[block][face];
-        let special = lanes.iter().any(|n| matches!(n, Neighbour::Boundary(_) | Neighbour::Interface(..)));
+        let has_boundary_or_interface =
+            lanes.iter().any(|n| matches!(n, Neighbour::Boundary(_) | Neighbour::Interface(..)));
         let own = |lane: usize| Across { face: 4 * block + face, lane, flip: false };
         // Padding stays at rest only where it sees itself: a block that has it is never aligned.
         let (mut across, mut source, mut aligned) = ([own(0); LANES], None, self.count[block] == LANES);
@@ -114,13 +115,13 @@ impl Blocks {
             }
         }
         if aligned {
-            return Plan { side: Side::Aligned(source.unwrap_or(4 * block + face)), special };
+            return Plan { side: Side::Aligned(source.unwrap_or(4 * block + face)), has_boundary_or_interface };
         }
         if let Some(side) = joined(&across, &lanes).filter(|_| self.count[block] == LANES) {
-            return Plan { side, special };
+            return Plan { side, has_boundary_or_interface };
         }
         self.gathered.push(Gathered::of(&across));
-        Plan { side: Side::Gathered(self.gathered.len() - 1), special }
+        Plan { side: Side::Gathered(self.gathered.len() - 1), has_boundary_or_interface }
     }
 
     /// Number of blocks.

@@ -52,7 +52,7 @@ pub struct Plan {
     /// The other side.
     pub side: Side,
     /// Whether a lane is at a boundary or at another material.
-    pub special: bool,
+    pub has_boundary_or_interface: bool,
 }
 
 /// Lanes whose other sides lie in one face.

@@ -88,7 +88,7 @@ impl Balance {
 
 /// The balance of one block over one step, a lane a cell, J/m.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Sums {
+pub(super) struct BlockBalance {
     /// The power of jumps between cells; of an inner face each side has half.
     pub flux: F8,
     /// The power of what the boundary condition differs from the trace of the body.
@@ -156,7 +156,7 @@ impl Work {
     /// With the memory that the balance of energy needs; the steps then meter it.
     pub fn with_balance(mut self, scheme: &Scheme) -> Self {
         self.tiles.widen(scheme);
-        self.balance = Some(vec![Sums::default(); scheme.operators.blocks.len()]);
+        self.balance = Some(vec![BlockBalance::default(); scheme.operators.blocks.len()]);
         self
     }
 
@@ -169,15 +169,15 @@ impl Work {
     pub fn settle(&self, scheme: &Scheme, balance: &mut Balance) {
         let Some(blocks) = &self.balance else { return };
         let (mut flux, mut boundary, mut corrected, mut energy) = (0.0, 0.0, 0.0, 0.0);
-        for (sums, &count) in blocks.iter().zip(&scheme.operators.blocks.count) {
+        for (block, &count) in blocks.iter().zip(&scheme.operators.blocks.count) {
             for lane in 0..count {
-                flux += sums.flux.0[lane];
-                boundary += sums.boundary.0[lane];
-                corrected += sums.corrected.0[lane];
-                energy += sums.energy.0[lane];
+                flux += block.flux.0[lane];
+                boundary += block.boundary.0[lane];
+                corrected += block.corrected.0[lane];
+                energy += block.energy.0[lane];
             }
         }
-        let [by_boundary, by_sources] = self.given();
+        let [by_boundary, by_sources] = self.external_work();
         balance.boundary_work += by_boundary;
         balance.source_work += by_sources;
         balance.jumps += flux + boundary;

@@ -1,7 +1,7 @@
 //! The energy of the cells of a block: what the balance meters in a step, and the watch over the energy from time to time.
 
+use super::at_points::at_points;
 use super::history::recall;
-use super::survey::at_points;
 use super::volume::{Masses, with_nodes};
 use super::{Scheme, Scratch, Work as Memory, dense, with_scratch};
 use crate::lane::{F8, Lanes, Work};

@@ -1,19 +1,11 @@
 //! The control of the curl of F in one block: what [`Relax`] takes of R = F - Pi F = C C^T W F.
 
-use super::curl_core::Cells;
+use super::curl_core::{Arrays, Cells};
 use super::volume::Masses;
 use crate::lane::{F8, Lane, Lanes, Work};
 use crate::operators::curl_free::{Class, Halves, Relax};
 use crate::operators::{CurlFree, Matrix, Share};
 use crate::tensor::contract;
-
-/// Memory of the projection.
-pub struct Arrays<'a> {
-    /// W F, [row i][direction][node]; or what of F goes into the products of [`Halves`] and [`Cells`].
-    pub weighted: &'a mut [F8],
-    /// C^T W F, [row i][column]; or what comes out of those products.
-    pub coefficients: &'a mut [F8],
-}
 
 /// The control of the curl of F.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,12 +1,57 @@
 //! The start of a Runge-Kutta stage: U = U^n + dt sum_j a_ij k_j at the nodes, and the law there.
 
+use super::block::Block;
 use super::history::recall;
+use super::sums::Terms;
+use super::volume;
 use crate::lane::{F8, Lanes, Work, store_array};
 use crate::material::{Law, Material};
+use crate::state::{State, UNKNOWNS};
+use crate::tensor::DEFORMATION;
 use crate::with_law;
 
+impl Block<'_> {
+    /// F, v and P of the stage at the nodes, from the state at t_n and dU/dt in earlier stages, [stage][component][node].
+    pub fn stage_at_nodes(&self, state: &State, before: &[F8], nodes: &mut volume::Arrays) {
+        let (n, kernel) = (self.scheme.operators.nodes(), self.scheme.kernel);
+        let stride = state.components * n;
+        // The law needs the six of U alone.
+        let start = &self.unknowns(state)[..UNKNOWNS * n];
+        let factors = self.stage.row.iter().map(|a| a * self.stage.dt);
+        let terms = Terms::new(factors, before, stride, UNKNOWNS * n);
+        let (start, term) = match terms.few() {
+            Some(term) => (start, term),
+            None => {
+                let out = &mut nodes.stage[..UNKNOWNS * n];
+                kernel.run(Sum { terms, start, out });
+                (&nodes.stage[..UNKNOWNS * n], None)
+            }
+        };
+        let (mean, stress) = (&mut nodes.mean[..UNKNOWNS * n], &mut nodes.mean_stress[..DEFORMATION * n]);
+        kernel.run(AtNodes { law: self.law(), start, term, internal: self.internal(state), mean, stress });
+    }
+}
+
+/// start + the terms of a sum over stages.
+pub(super) struct Sum<'a> {
+    /// The terms.
+    pub terms: Terms<'a>,
+    /// What they are added to.
+    pub start: &'a [F8],
+    /// The sum.
+    pub out: &'a mut [F8],
+}
+
+impl Work for Sum<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.terms.add_to::<L>(self.start, self.out);
+    }
+}
+
 /// A state at the nodes, and its Q.
-pub struct AtNodes<'a> {
+struct AtNodes<'a> {
     /// The law.
     pub law: &'a Law,
     /// U^n, [component][node].

@@ -3,7 +3,7 @@
 //! F rows in strong form (D v; `finish` adds the lifted jump of v), exact on uniform states; p rows in weak form. Both
 //! are exact integrals on bilinear cells, so the two forms agree there to rounding.
 
-use super::survey::Worst;
+use super::worst::Worst;
 use crate::lane::{F8, Lane, Lanes, Twin, Work, load_array, store_array, twins};
 use crate::material::{Law, Material};
 use crate::operators::{Line, Metric, determinant};
@@ -57,7 +57,7 @@ pub struct Arrays {
     /// Sources b, averaged over time, [2][node].
     pub source: Vec<F8>,
     /// Averages of u, [node][2], where the flux looks at it.
-    pub place: Vec<F8>,
+    pub displacement: Vec<F8>,
     /// Lifted numbers: [face][face point][6].
     pub lift: Vec<F8>,
     /// Lifted by the traces of what is held: [face][face point][2].
@@ -81,7 +81,7 @@ impl Arrays {
             mean_stress: zeros(4 * n),
             contravariant: zeros(4 * n),
             source: zeros(2 * n),
-            place: zeros(2 * n),
+            displacement: zeros(2 * n),
             lift: zeros(4 * 6 * m),
             held: zeros(4 * 2 * m),
             masses: zeros(n),
@@ -253,7 +253,7 @@ pub struct Traces<'a, const M: usize, const METERED: bool> {
     /// Numbers of a trace, see [`width`].
     pub width: usize,
     /// Whether u is among them.
-    pub placed: bool,
+    pub with_displacement: bool,
     /// [face][point][`width`], out.
     pub traces: &'a mut [F8],
 }
@@ -289,9 +289,9 @@ impl<const M: usize, const METERED: bool> Traces<'_, M, METERED> {
                 store_array(tensor::times(stress, tangent(normal)), &mut out[width - 2..]);
             }
             store_array(line_sum::<L, M, 6, 6>(&ends, nodes_of(mean, first, stride), 0), &mut out[..6]);
-            if self.placed {
-                let place = &self.arrays.place.as_chunks::<2>().0[..M * M];
-                store_array(line_sum::<L, M, 2, 2>(&held, nodes_of(place, first, stride), 0), &mut out[9..11]);
+            if self.with_displacement {
+                let displacement = &self.arrays.displacement.as_chunks::<2>().0[..M * M];
+                store_array(line_sum::<L, M, 2, 2>(&held, nodes_of(displacement, first, stride), 0), &mut out[9..11]);
             }
         }
     }

@@ -10,7 +10,8 @@
 
 mod planner;
 
-use super::Stage;
+use crate::lane::LANES;
+use crate::mesh::FACES;
 use crate::operators::{Blocks, Neighbour};
 use planner::Planner;
 use std::ops::Range;
@@ -113,9 +114,9 @@ impl Plan {
 
 /// For each block the blocks that touch it, ascending, itself among them.
 pub fn graph(blocks: &Blocks) -> Vec<Vec<usize>> {
-    let around = |(block, neighbours): (usize, &[[Neighbour; 8]; 4])| {
+    let around = |(block, neighbours): (usize, &[[Neighbour; LANES]; FACES])| {
         let linked = neighbours.iter().flatten().filter_map(|neighbour| match neighbour {
-            Neighbour::Cell(across) | Neighbour::Interface(across, _) => Some(across.face / 4),
+            Neighbour::Cell(across) | Neighbour::Interface(across, _) => Some(across.face / FACES),
             Neighbour::Boundary(_) | Neighbour::Padding => None,
         });
         let mut all: Vec<usize> = linked.chain([block]).collect();
@@ -124,14 +125,6 @@ pub fn graph(blocks: &Blocks) -> Vec<Vec<usize>> {
         all
     };
     blocks.neighbours.iter().enumerate().map(around).collect()
-}
-
-/// Time nodes of the stages of a step on the stack: at most so many stages.
-pub const STAGES: usize = 12;
-
-/// The stages 0 to `STAGES` of a step, each with its one time node.
-pub fn stages<'a>(times: &'a [[crate::boundary::TimeNode; 1]; STAGES], dt: f64) -> [Stage<'a>; STAGES] {
-    std::array::from_fn(|number| Stage { number, times: &times[number], dt })
 }
 
 #[cfg(test)]
