@@ -74,6 +74,7 @@ fn scheme(method: Method, degree: usize) -> Result<Scheme, Box<dyn std::error::E
         flux: Flux::Rusanov,
         boundaries: (0..4).map(|_| Box::new(Wall { speed: None }) as Box<dyn Boundary>).collect(),
         sources: vec![],
+        corrections: vec![],
         curl: (degree > 0).then_some(Control { relax: Relax::Gradient, rate: alpha * degree as f64 }),
         kernel: Kernel::widest(),
     })

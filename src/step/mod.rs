@@ -13,6 +13,8 @@ mod begin;
 mod block;
 mod block_energy;
 pub mod cfl;
+mod corrected_stages;
+mod correction;
 mod curl;
 mod curl_core;
 mod dense;
@@ -42,6 +44,7 @@ mod worst;
 
 pub use crate::operators::curl_free::Relax;
 pub use balance::Balance;
+pub use correction::{Corrected, Correction, Made};
 pub use curl::Control;
 pub use energy::{EnergyMade, Totals};
 pub use history::Histories;
@@ -97,6 +100,8 @@ pub struct Scheme {
     pub sources: Vec<Box<dyn Source>>,
     /// The control of the curl of F; none where it is off.
     pub curl: Option<Control>,
+    /// What changes the new state after each step, one after the other.
+    pub corrections: Vec<Box<dyn Correction>>,
     /// The instruction set.
     pub kernel: Kernel,
 }
@@ -113,6 +118,8 @@ pub struct Work {
     outside: outside::Outside,
     /// The balance of the step, by block; none where nobody asks for it.
     balance: Option<Vec<balance::BlockBalance>>,
+    /// The memory of the corrections; none where there are none.
+    corrections: Option<Box<correction::Memory>>,
     /// One a thread.
     scratch: Vec<Mutex<Scratch>>,
     /// The clock of the phases.
@@ -146,6 +153,7 @@ impl Work {
             tiles: tile_memory::Tiles::new(scheme, state.components * operators.nodes()),
             outside: outside::Outside::new(scheme),
             balance: None,
+            corrections: correction::Memory::new(scheme, state),
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
             rate: phase::Rate::start(),
         }
@@ -167,6 +175,7 @@ impl Work {
         numbers * size_of::<F8>()
             + self.outside.bytes()
             + self.balance.as_ref().map_or(0, |blocks| size_of_val(&blocks[..]))
+            + self.corrections.as_ref().map_or(0, |memory| memory.bytes())
     }
 }
 
@@ -220,7 +229,10 @@ impl Scheme {
             Method::RungeKutta(tableau) => {
                 let mut times = [[TimeNode { time: 0.0, weight: 1.0 }]; MOST_STAGES];
                 times.iter_mut().zip(&tableau.c).for_each(|(node, c)| node[0].time = state.time + c * dt);
-                let row = |number: usize| tableau.a.get(number).map_or(&[][..], |row| &row[..]);
+                // Where corrections act on stages, blocks begin with what they have made of the sum.
+                let summed = work.corrections.as_ref().is_some_and(|memory| memory.stage.is_some());
+                let rows = if summed { &[][..] } else { &tableau.a[..] };
+                let row = |number: usize| rows.get(number).map_or(&[][..], |row| &row[..]);
                 let stages: [Stage; MOST_STAGES] =
                     std::array::from_fn(|number| Stage { number, times: &times[number], row: row(number), dt });
                 self.on_all_blocks(&stages[..tableau.stages()], (state, survey), work, begin, finish);
@@ -228,6 +240,9 @@ impl Scheme {
         }
         work.next.time = time;
         work.next.step = state.step + 1;
+        if !self.corrections.is_empty() {
+            self.correct(state, dt, work);
+        }
     }
 
     /// What the rate of a stage counts in U^(n+1) = U^n + dt sum_s b_s k_s; 1 for ADER.

@@ -41,7 +41,7 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
 
     fn begin(&mut self, event: &Event) {
         let Self { step, tile, shown, out, scratch } = self;
-        let Step { scheme, stages, state, survey, slots, outside, far, .. } = *step;
+        let Step { scheme, stages, start: state, survey, slots, outside, far, .. } = *step;
         let (number, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
         let blocks = scheme.operators.blocks.len();
         if let (0, Some(later)) = (stage.number, tile.plan.after(number, AHEAD)) {
@@ -98,7 +98,13 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
                 u: &mut out.u[at * stride..][..stride],
                 internal: &mut out.internal[history.start - start..history.end - start],
                 speed: &mut out.speed[at],
-                worst: &mut tile.worst,
+                worst: match out.worst.get_mut(at) {
+                    None => &mut tile.worst,
+                    Some(worst) => {
+                        *worst = Worst::NONE;
+                        worst
+                    }
+                },
             }
         });
         let slots = &slots[stage.number * blocks..][..blocks];
@@ -129,6 +135,8 @@ struct Out<'a> {
     internal: &'a mut [F8],
     /// New wave speeds.
     speed: &'a mut [Speeds],
+    /// The worst of each block, where corrections may change it; else nothing.
+    worst: &'a mut [Worst],
     /// The work on those blocks that something outside acts on.
     external: &'a mut [ExternalWork],
     /// The balance of the blocks; none where it is off.
@@ -147,15 +155,8 @@ impl<'a> Out<'a> {
 
     /// The same for a shorter time.
     fn again(&mut self) -> Out<'_> {
-        let balance = self.balance.as_deref_mut();
-        Out {
-            first: self.first,
-            u: self.u,
-            internal: self.internal,
-            speed: self.speed,
-            external: self.external,
-            balance,
-        }
+        let Self { first, u, internal, speed, worst, external, balance } = self;
+        Out { first: *first, u, internal, speed, worst, external, balance: balance.as_deref_mut() }
     }
 
     /// Those of the first `blocks`, with so many internal variables and entries of `external`, and the rest.
@@ -164,10 +165,12 @@ impl<'a> Out<'a> {
         let (u, u2) = self.u.split_at_mut(blocks * stride);
         let (internal, internal2) = self.internal.split_at_mut(internal);
         let (speed, speed2) = self.speed.split_at_mut(blocks);
+        let (worst, worst2) = self.worst.split_at_mut(blocks.min(self.worst.len()));
         let (external, external2) = self.external.split_at_mut(external);
         let (balance, balance2) = self.balance.map(|balance| balance.split_at_mut(blocks)).unzip();
-        let left = Out { first, u, internal, speed, external, balance };
-        (left, Out { first: second, u: u2, internal: internal2, speed: speed2, external: external2, balance: balance2 })
+        let left = Out { first, u, internal, speed, worst, external, balance };
+        let (first, u, internal, speed) = (second, u2, internal2, speed2);
+        (left, Out { first, u, internal, speed, worst: worst2, external: external2, balance: balance2 })
     }
 }
 
@@ -180,6 +183,8 @@ struct Step<'a, B, F> {
     scheme: &'a Scheme,
     stages: &'a [Stage<'a>],
     state: &'a State,
+    /// What blocks begin a stage with: the state, but where corrections have acted on the stage.
+    start: &'a State,
     survey: &'a Survey,
     slots: &'a [Slot],
     /// See [`outside::Outside::first`].
@@ -224,17 +229,26 @@ impl Scheme {
         begin: impl Fn(Begin) + Copy + Send + Sync,
         finish: impl Fn(Finish) + Copy + Send + Sync,
     ) {
-        let Work {
-            tiles: Tiles { tiles, phases, shown, slots, far, .. }, next, speed, outside, balance, scratch, ..
-        } = work;
+        let Work { tiles, next, speed, outside, balance, scratch, corrections, .. } = work;
+        let Tiles { tiles, phases, shown, slots, far, .. } = tiles;
         let (u, internal, balance) = (&mut next.u[..], &mut next.internal[..], balance.as_deref_mut());
-        let mut out = Out { first: 0, u, internal, speed, external: &mut outside.entries, balance };
+        let (worst, mut starts) = match corrections.as_deref_mut() {
+            Some(memory) => memory.parts(),
+            None => (&mut [][..], None),
+        };
+        let mut out = Out { first: 0, u, internal, speed, worst, external: &mut outside.entries, balance };
         let count = tiles.len();
         for phase in 0..*phases {
+            let start = match &mut starts {
+                // Stage by stage, see `Plan::by_stages`.
+                Some(starts) if phase >= 2 && phase % 2 == 0 => starts.of(self, &stages[phase / 2], state, tiles),
+                _ => state,
+            };
             let (seen, shown) = shown.split_at_mut(phase * count);
             let outside = &outside.first[..];
             let (scheme, far) = (self, *far);
-            let step = Step { begin, finish, scheme, stages, state, survey, slots, outside, far, scratch, phase, seen };
+            let step =
+                Step { begin, finish, scheme, stages, state, start, survey, slots, outside, far, scratch, phase, seen };
             step.run(tiles, &mut shown[..count], out.again());
         }
     }

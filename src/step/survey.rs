@@ -9,8 +9,9 @@ use super::worst::{Found, Worst};
 use super::{Phase, Scheme, Scratch, Work as Memory, with_scratch};
 use crate::lane::{self, F8, Lane, Lanes, Twin, Work};
 use crate::material::Material;
+use crate::mesh::FACES;
 use crate::state::State;
-use crate::tensor;
+use crate::tensor::{self, DEFORMATION};
 use crate::with_law;
 use rayon::prelude::*;
 
@@ -63,7 +64,9 @@ impl Scheme {
     pub(crate) fn surveyed(&self, memory: &mut Memory, out: &mut Survey) -> Result<(), Loss> {
         std::mem::swap(&mut out.speed, &mut memory.speed);
         memory.speed.resize(out.speed.len(), Speeds::default());
-        self.judge(memory.tiles.worst(), &memory.next, out)
+        let corrected = memory.corrections.as_ref().map_or(&[][..], |memory| &memory.worst);
+        let worst = corrected.iter().fold(memory.tiles.worst(), |worst, block| worst.and(*block));
+        self.judge(worst, &memory.next, out)
     }
 
     /// [`Scheme::survey`], and the health at face points: of a state that no step has made, or that none will look at.
@@ -95,9 +98,9 @@ impl Scheme {
     /// The same of one lane.
     fn faces_of_lane(&self, state: &State, block: usize, lane: usize) -> FacePoint {
         let (line, n) = (&self.operators.line, self.operators.nodes());
-        let (m, u) = (line.m, &state.u[block * state.components * n..][..4 * n]);
+        let (m, u) = (line.m, &state.u[block * state.components * n..][..DEFORMATION * n]);
         let mut worst = FacePoint { block, lane, at: [0; 2], j: f64::INFINITY };
-        for face in 0..4 {
+        for face in 0..FACES {
             let ends = &line.ends[face % 2];
             for point in 0..m {
                 let (first, stride) = if face < 2 { (point, m) } else { (point * m, 1) };
@@ -159,7 +162,7 @@ impl Work for Examine<'_> {
         let Self { scheme, block, u, history, scratch, speed, worst } = self;
         let mut clock = scratch.phases.clock();
         let law = &scheme.laws[scheme.operators.blocks.material[block]];
-        let (f, others) = u.split_at(4 * scheme.operators.nodes());
+        let (f, others) = u.split_at(DEFORMATION * scheme.operators.nodes());
         let at_nodes = match scheme.samples_at_nodes(block) {
             true => L::splat(f64::INFINITY),
             false => with_nodes!(scheme.operators.line.m, M => health::smallest_j::<L, M>(f)),
@@ -220,11 +223,11 @@ fn prestress<L: Lanes, M: Material>(law: &M, points: &PointValues, internal: &[F
         return L::zero();
     }
     let share = L::splat(1.0 / points.count as f64);
-    let mut sum = [L::zero(); 4];
+    let mut sum = [L::zero(); DEFORMATION];
     for p in 0..points.count {
         let f = points.at::<L>(p);
         let part = if M::INTERNAL.is_empty() { f } else { kirchhoff(law, f, &mut recall::<L, M>(law, internal, p)) };
-        for k in 0..4 {
+        for k in 0..DEFORMATION {
             sum[k] = part[k].mul_add(share, sum[k]);
         }
     }

@@ -39,6 +39,8 @@ impl Tiles {
     pub fn new(scheme: &Scheme, stride: usize) -> Self {
         let (stages, blocks) = (scheme.stages(), &scheme.operators.blocks);
         let plan = Plan::new(&tiles::graph(blocks), stages, rayon::current_num_threads().max(1));
+        // Corrections of stages need all blocks of a stage at once.
+        let plan = if scheme.corrects_stages() { plan.by_stages(stages) } else { plan };
         let phases = plan.phases();
         let tile = |plan: tiles::Tile| {
             let rates = vec![F8::ZERO; plan.rates * stages * stride];

@@ -100,6 +100,32 @@ impl Plan {
         best
     }
 
+    /// The same tiles stage by stage: all blocks begin a stage in one phase, and finish it in the next one.
+    pub fn by_stages(mut self, stages: usize) -> Self {
+        let (tiles, blocks) = (self.tiles.len(), self.tiles.last().map_or(0, |tile| tile.range.end));
+        self.slots = vec![Slot::default(); stages * blocks];
+        self.shown = vec![0; 2 * stages * tiles];
+        for (number, tile) in self.tiles.iter_mut().enumerate() {
+            let range = tile.range.clone();
+            *tile = Tile { events: vec![], phases: vec![], rates: range.len(), traces: 0, range, falls: false };
+            for phase in 0..2 * stages {
+                let (stage, begins) = (phase / 2, phase % 2 == 0);
+                let store = phase * tiles + number;
+                let first = tile.events.len();
+                for (index, block) in tile.range.clone().enumerate() {
+                    let (index, block32) = (index as u32, block as u32);
+                    tile.events.push(Event { block: block32, rates: index, stage: stage as u8, begins });
+                    if begins {
+                        self.slots[stage * blocks + block] = Slot { store: 1 + store as u32, index };
+                        self.shown[store] += 1;
+                    }
+                }
+                tile.phases.push(first..tile.events.len());
+            }
+        }
+        self
+    }
+
     /// The number of phases.
     pub fn phases(&self) -> usize {
         self.tiles.first().map_or(0, |tile| tile.phases.len())
