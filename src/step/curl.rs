@@ -5,7 +5,7 @@ use super::volume::Masses;
 use crate::lane::{F8, Lane, Lanes, Work};
 use crate::operators::curl_free::{Class, Halves, Relax};
 use crate::operators::{CurlFree, Matrix, Share};
-use crate::tensor::contract;
+use crate::tensor::{DEFORMATION, contract};
 
 /// The control of the curl of F.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,14 +99,15 @@ pub fn rotate<L: Lanes, const M: usize>(
     u: &mut [F8],
 ) {
     let n = M * M;
-    let gradients = &mut gradients[..4 * n];
-    gradients.copy_from_slice(&u[..4 * n]);
+    let gradients = &mut gradients[..DEFORMATION * n];
+    gradients.copy_from_slice(&u[..DEFORMATION * n]);
     let Masses { line, metric, masses } = masses;
     project::<L, M>(curl_free, block, L::splat(1.0), Masses { line, metric, masses: &mut *masses }, arrays, gradients);
     let mass = Masses::<'_, M> { line, metric, masses }.run::<L>();
-    let (mut total, mut sum) = (L::zero(), [L::zero(); 4]);
+    let (mut total, mut sum) = (L::zero(), [L::zero(); DEFORMATION]);
     for a in 0..n {
-        let (f, pi) = (super::dense::gather::<L, 4>(u, n, a), super::dense::gather::<L, 4>(gradients, n, a));
+        let (f, pi) =
+            (super::dense::gather::<L, DEFORMATION>(u, n, a), super::dense::gather::<L, DEFORMATION>(gradients, n, a));
         let r = [f[0] - pi[0], f[1] - pi[1], f[2] - pi[2], f[3] - pi[3]];
         let (e, g) = ([-f[2], -f[3], f[0], f[1]], [f[3], -f[2], -f[1], f[0]]);
         let q = L::splat(1.0) / contract(f, f);
@@ -115,7 +116,7 @@ pub fn rotate<L: Lanes, const M: usize>(
         let (turn, trace) = ((theta[1] - theta[0]) * turn, theta[1] * trace);
         let m = L::load(&mass[a]);
         total = total + m;
-        for k in 0..4 {
+        for k in 0..DEFORMATION {
             let d = turn.mul_add(e[k], trace.mul_add(g[k], -(theta[1] * r[k])));
             sum[k] = m.mul_add(d, sum[k]);
             d.store(&mut gradients[k * n + a]);
@@ -176,7 +177,7 @@ fn with_halves<L: Lanes, const M: usize>(halves: &Halves, theta: L, arrays: Arra
     let n = M * M;
     let (evens, odds) = (n.div_ceil(2), n / 2);
     let (even, odd) = arrays.weighted.as_chunks_mut::<2>().0[..2 * n].split_at_mut(2 * evens);
-    let fields = &mut u[..4 * n];
+    let fields = &mut u[..DEFORMATION * n];
     for (k, f) in fields.chunks_exact(n).enumerate() {
         let (i, axis) = (k / 2, k % 2);
         for a in 0..odds {
@@ -257,7 +258,7 @@ fn with_matrix<L: Lanes, const M: usize>(
     let (rows, columns, n) = (matrix.rows, matrix.columns, M * M);
     let mass = masses.run::<L>();
     let Arrays { weighted, coefficients } = arrays;
-    for (weighted, u) in weighted.chunks_exact_mut(n).zip(u.chunks_exact(n)).take(4) {
+    for (weighted, u) in weighted.chunks_exact_mut(n).zip(u.chunks_exact(n)).take(DEFORMATION) {
         for a in 0..n {
             (L::load(&mass[a]) * L::load(&u[a])).store(&mut weighted[a]);
         }

@@ -13,13 +13,13 @@ use crate::lane::{F8, Lanes};
 use crate::mesh::map;
 use crate::operators::{Matrix, PointMatrices, Share};
 use crate::state::State;
-use crate::tensor;
+use crate::tensor::{self, DEFORMATION};
 
 /// Smallest J of M x M nodes, F being `[component][node]`.
 #[inline(always)]
 pub(super) fn smallest_j<L: Lanes, const M: usize>(f: &[F8]) -> L {
     let n = M * M;
-    let f = &f[..4 * n];
+    let f = &f[..DEFORMATION * n];
     let mut smallest = L::splat(f64::INFINITY);
     for a in 0..n {
         let f = [L::load(&f[a]), L::load(&f[n + a]), L::load(&f[2 * n + a]), L::load(&f[3 * n + a])];
@@ -120,7 +120,7 @@ impl Scheme {
                 None => number(k, point),
                 Some(m) => m.row(point).iter().enumerate().map(|(a, w)| w * number(k, a)).sum(),
             };
-            let f: [f64; 4] = std::array::from_fn(at);
+            let f: [f64; DEFORMATION] = std::array::from_fn(at);
             let j = tensor::det(f);
             let site = if points.is_some() { Site::Point(point) } else { Site::Node(point) };
             let speeds = law.largest_speeds(f, &self.internal_at(state, block, lane, point));

@@ -85,18 +85,18 @@ impl AtNodes<'_> {
     /// With so many TERMS, 0 or 1.
     #[inline(always)]
     fn with<L: Lanes, M: Material, const TERMS: usize>(&mut self, law: M, factor: f64, rate: &[F8]) {
-        let (mean, stress) = (self.mean.as_chunks_mut::<6>().0, self.stress.as_chunks_mut::<4>().0);
+        let (mean, stress) = (self.mean.as_chunks_mut::<UNKNOWNS>().0, self.stress.as_chunks_mut::<DEFORMATION>().0);
         let n = stress.len();
         let mean = &mut mean[..n];
-        let (mut start, mut slope) = ([&[] as &[F8]; 6], [&[] as &[F8]; 6]);
-        for k in 0..6 {
+        let (mut start, mut slope) = ([&[] as &[F8]; UNKNOWNS], [&[] as &[F8]; UNKNOWNS]);
+        for k in 0..UNKNOWNS {
             start[k] = &self.start[k * n..][..n];
             slope[k] = if TERMS > 0 { &rate[k * n..][..n] } else { start[k] };
         }
         let (factor, inverse_density) = (L::splat(factor), L::splat(1.0 / law.density()));
         for a in 0..n {
-            let mut u = [L::zero(); 6];
-            for k in 0..6 {
+            let mut u = [L::zero(); UNKNOWNS];
+            for k in 0..UNKNOWNS {
                 u[k] = L::load(&start[k][a]);
                 if TERMS > 0 {
                     u[k] = factor.mul_add(L::load(&slope[k][a]), u[k]);
