@@ -98,13 +98,7 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
                 u: &mut out.u[at * stride..][..stride],
                 internal: &mut out.internal[history.start - start..history.end - start],
                 speed: &mut out.speed[at],
-                worst: match out.worst.get_mut(at) {
-                    None => &mut tile.worst,
-                    Some(worst) => {
-                        *worst = Worst::NONE;
-                        worst
-                    }
-                },
+                worst: worst_of(out.worst, at, &mut tile.worst),
             }
         });
         let slots = &slots[stage.number * blocks..][..blocks];
@@ -123,6 +117,14 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
             scratch,
         });
     }
+}
+
+/// Where the survey of a block goes: to the worst of the block by itself, where that is kept, else to that of its tile.
+#[inline]
+fn worst_of<'a>(by_block: &'a mut [Worst], block: usize, tile: &'a mut Worst) -> &'a mut Worst {
+    let Some(worst) = by_block.get_mut(block) else { return tile };
+    *worst = Worst::NONE;
+    worst
 }
 
 /// What a step makes of the blocks of some tiles that follow each other.
