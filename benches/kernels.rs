@@ -10,7 +10,7 @@ use dgmpm::mesh::map;
 use dgmpm::problem::Problem;
 use dgmpm::riemann::{Acoustic, AcousticCurl, Medium, Riemann, Rusanov, Trace};
 use dgmpm::scene::Method;
-use dgmpm::step::{Survey, Work as Memory};
+use dgmpm::step::Motion;
 use divan::{Bencher, black_box, counter::ItemsCount};
 
 /// Points of eight cells that one call treats: the fields of a block of degree 3 fit the first cache.
@@ -122,14 +122,9 @@ fn step(bencher: Bencher, method: Method, layout: Option<&str>, degree: usize) {
     let setup = Setup { method, degree, domain, layout, law, kernel, sets: vec![] };
     let subject = setup.build().expect("the wave on a lattice is a valid problem");
     let (Problem { scheme, state: start, settings, .. }, h) = (subject.problem, subject.h);
-    let (mut work, mut survey) = (Memory::new(&scheme, &start), Survey::default());
-    scheme.survey(&start, &work, &mut survey).expect("the wave is healthy");
-    let dt = settings.courant * h / survey.fastest;
-    let mut next = survey.clone();
-    bencher.counter(ItemsCount::new(64_usize)).bench_local(|| {
-        scheme.step(&start, dt, &survey, &mut work);
-        scheme.surveyed(&mut work, &mut next).is_ok()
-    });
+    let mut motion = Motion::new(&scheme, start).expect("the wave is healthy");
+    let dt = settings.courant * h / motion.survey.fastest;
+    bencher.counter(ItemsCount::new(64_usize)).bench_local(|| motion.attempt(&scheme, dt).is_ok());
 }
 
 #[divan::bench(args = [1, 2, 3, 4])]

@@ -12,7 +12,7 @@ use dgmpm::mesh::{links, rectangle};
 use dgmpm::operators::{Needs, Operators, Sampling};
 use dgmpm::riemann::Flux;
 use dgmpm::state::State;
-use dgmpm::step::{Control, Histories, Method, Relax, Scheme, Survey, Sweeps, Tableau, Work};
+use dgmpm::step::{Control, Histories, Method, Motion, Relax, Scheme, Sweeps, Tableau};
 
 const CELLS: usize = 4;
 
@@ -74,6 +74,7 @@ fn scheme(method: Method, degree: usize) -> Result<Scheme, Box<dyn std::error::E
         flux: Flux::Rusanov,
         boundaries: (0..4).map(|_| Box::new(Wall { speed: None }) as Box<dyn Boundary>).collect(),
         sources: vec![],
+        corrections: vec![],
         curl: (degree > 0).then_some(Control { relax: Relax::Gradient, rate: alpha * degree as f64 }),
         kernel: Kernel::widest(),
     })
@@ -98,23 +99,21 @@ fn grows(scheme: &Scheme, uniform: [f64; 6], courant: f64) -> bool {
         ((seed >> 33) as f64 / (1_u64 << 31) as f64 - 0.5) * 1e-7
     };
     let start: Vec<f64> = (0..CELLS * CELLS * 6 * nodes).map(|i| mean(i) + noise()).collect();
-    let mut state = State::pack(&scheme.operators.blocks, nodes, 6, &start);
-    let (mut work, mut survey) = (Work::new(scheme, &state), Survey::default());
+    let state = State::pack(&scheme.operators.blocks, nodes, 6, &start);
+    let Ok(mut motion) = Motion::new(scheme, state) else { return true };
     let size = |state: &State| -> f64 {
         let values = state.unpack(&scheme.operators.blocks, nodes);
         values.iter().enumerate().map(|(i, u)| (u - mean(i)).powi(2)).sum::<f64>().sqrt()
     };
     let mut early = f64::INFINITY;
     for step in 0..1500 {
-        if scheme.survey(&state, &work, &mut survey).is_err() {
+        if step == 300 {
+            early = size(&motion.state);
+        }
+        if motion.advance(scheme, courant / CELLS as f64 / motion.survey.fastest).is_err() {
             return true;
         }
-        if step == 300 {
-            early = size(&state);
-        }
-        scheme.step(&state, courant / CELLS as f64 / survey.fastest, &survey, &mut work);
-        std::mem::swap(&mut state, &mut work.next);
     }
-    let late = size(&state);
+    let late = size(&motion.state);
     late.is_nan() || late >= 1.2 * early
 }

@@ -29,6 +29,9 @@
 //!    relaxed, at a rate tied to compression. Without it the discrete system is unstable there, whatever dt (not in the
 //!    paper; `docs/method.md`).
 //!
+//! [`step::Motion`] goes from step to step. What a scheme lists as [`step::Correction`]s, limiters and dampings, changes the
+//! new state after a step.
+//!
 //! ADER-DGFEM has its points at the nodes (chi = Phi); RK-DGFEM replaces 1 to 3 by Runge-Kutta stages. Grid unknowns are
 //! the master copy between steps; internal variables live at the points and are never projected. The step size follows
 //! the largest current wave speed ([`step::cfl`]).

@@ -2,15 +2,16 @@
 
 use crate::lane::F8;
 use crate::operators::Blocks;
+use crate::tensor::{AXES, DEFORMATION};
 
 /// Components of U = (F11, F12, F21, F22, p1, p2).
-pub const UNKNOWNS: usize = 6;
+pub const UNKNOWNS: usize = DEFORMATION + AXES;
 
 /// The grid unknowns at the Gauss nodes, the master copy between steps.
 ///
 /// Layout: `[block][component][node]`, node a = i M + j with i along xi1. Components are the six of U and, where an
 /// output asks for it or the flux holds its jumps ([`crate::riemann::hold`]), the displacement u1, u2 (m): du/dt = v.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct State {
     /// Time t, s.
     pub time: f64,

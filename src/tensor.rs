@@ -2,6 +2,12 @@
 
 use crate::lane::Lane;
 
+/// Axes of the plane: components of a vector.
+pub const AXES: usize = 2;
+
+/// Components of a tensor of the plane, as F and P are.
+pub const DEFORMATION: usize = AXES * AXES;
+
 /// det F = F11 F22 - F12 F21 (the jacobian J, since F33 = 1).
 #[inline(always)]
 pub fn det<L: Lane>(f: [L; 4]) -> L {

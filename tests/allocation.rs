@@ -3,8 +3,7 @@
 
 use dgmpm::problem::Problem;
 use dgmpm::scene::Scene;
-use dgmpm::state::State;
-use dgmpm::step::{Scheme, Survey, Work};
+use dgmpm::step::{Motion, Scheme};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::path::Path;
@@ -92,10 +91,7 @@ fields = ["displacement"]
 
 struct Run {
     scheme: Scheme,
-    state: State,
-    work: Work,
-    survey: Survey,
-    next: Survey,
+    motion: Motion,
     dt: f64,
 }
 
@@ -106,19 +102,15 @@ impl Run {
         let scene = Scene::parse(SCENE, Path::new("allocation.toml"), &sets).unwrap();
         let Problem { scheme, state, settings, .. } = Problem::new(&scene).unwrap();
         assert!(state.has_displacement() && !scheme.sources.is_empty());
-        let (work, survey) = (Work::new(&scheme, &state), Survey::default());
-        let mut run = Self { scheme, state, work, next: survey.clone(), survey, dt: 0.0 };
-        run.scheme.survey(&run.state, &run.work, &mut run.survey).unwrap();
-        run.dt = 0.5 * settings.courant / 24.0 / run.survey.fastest;
+        let motion = Motion::new(&scheme, state).unwrap();
+        let dt = 0.5 * settings.courant / 24.0 / motion.survey.fastest;
+        let mut run = Self { scheme, motion, dt };
         (0..3).for_each(|_| run.step());
         run
     }
 
     fn step(&mut self) {
-        self.scheme.step(&self.state, self.dt, &self.survey, &mut self.work);
-        self.scheme.surveyed(&mut self.work, &mut self.next).unwrap();
-        std::mem::swap(&mut self.state, &mut self.work.next);
-        std::mem::swap(&mut self.survey, &mut self.next);
+        self.motion.advance(&self.scheme, self.dt).unwrap();
     }
 }
 
@@ -139,7 +131,7 @@ fn on_one_thread(sets: &[&str], steps: usize) -> usize {
         let mut run = Run::warm(sets);
         let before = OWN.get();
         (0..steps).for_each(|_| run.step());
-        assert!(run.state.u.iter().flat_map(|u| u.0).all(f64::is_finite));
+        assert!(run.motion.state.u.iter().flat_map(|u| u.0).all(f64::is_finite));
         OWN.get() - before
     })
 }

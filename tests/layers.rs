@@ -103,6 +103,43 @@ fn a_module_uses_only_those_above_it() {
     assert!(found > 2 * order.len(), "only {found} uses found");
 }
 
+/// Files of a folder that a file of it names: `super::name` and the names of `super::{..}`. What the folder's `mod.rs` holds or
+/// hands on belongs to no other file.
+fn neighbours_used(text: &str, files: &BTreeSet<String>) -> BTreeSet<String> {
+    used(&text.replace("super::super::", "super::").replace("crate::", "").replace("super::", "crate::"))
+        .into_iter()
+        .filter(|name| files.contains(name))
+        .collect()
+}
+
+#[test]
+fn no_files_of_the_step_are_in_a_circle() {
+    let folder = source().join("step");
+    let text = std::fs::read_to_string(folder.join("mod.rs")).unwrap();
+    let (text, tests) = without_tests(&text);
+    let names = text.lines().filter_map(|line| declared(line.trim()));
+    let files: BTreeSet<String> = names.filter(|name| !tests.contains(*name)).map(str::to_owned).collect();
+    assert!(files.len() > 20, "{files:?}");
+    let mut uses: Vec<(String, BTreeSet<String>)> = Vec::new();
+    for file in &files {
+        let mut all = BTreeSet::new();
+        for path in [folder.join(format!("{file}.rs")), folder.join(file).join("mod.rs")] {
+            let Ok(text) = std::fs::read_to_string(path) else { continue };
+            all.extend(neighbours_used(&without_tests(&text).0, &files));
+        }
+        uses.push((file.clone(), all));
+    }
+    assert!(uses.iter().map(|(_, all)| all.len()).sum::<usize>() > files.len(), "the search finds uses");
+    // What uses nothing that is left goes, until nothing goes any more: what is left then is in a circle or uses one.
+    let mut left = uses.len() + 1;
+    while uses.len() < left {
+        left = uses.len();
+        let names: BTreeSet<String> = uses.iter().map(|(file, _)| file.clone()).collect();
+        uses.retain(|(_, all)| all.intersection(&names).next().is_some());
+    }
+    assert!(uses.is_empty(), "in a circle, or using one: {uses:#?}");
+}
+
 #[test]
 fn every_folder_and_file_of_the_source_is_reached() {
     let lib = std::fs::read_to_string(source().join("lib.rs")).unwrap();

@@ -6,8 +6,8 @@ use crate::error::Result;
 use crate::lane::Kernel;
 use crate::lane::counted::{self, Counts};
 use crate::problem::Problem;
+use crate::step::Motion;
 use crate::step::phase::PHASES;
-use crate::step::{Survey, Work};
 
 /// Cells per direction of the small mesh that stands for a large one of equal cells: whole blocks, no boundary.
 const SMALL: [usize; 2] = [8, 8];
@@ -48,14 +48,12 @@ pub fn count(setup: &Setup) -> Result<Flops> {
 
 fn count_step(subject: &Subject) -> Flops {
     let Subject { problem: Problem { scheme, state: start, settings, .. }, h, .. } = subject;
-    let mut work = Work::new(scheme, start);
-    let mut survey = Survey::default();
+    let mut motion = Motion::unsurveyed(scheme, start.clone());
     // The wave at its start is healthy, and so after a stable step.
-    let _ = scheme.survey(start, &work, &mut survey);
-    let dt = settings.courant * h / survey.fastest;
+    let _ = motion.survey(scheme);
+    let dt = settings.courant * h / motion.survey.fastest;
     let slots = counted::count(|| {
-        scheme.step(start, dt, &survey, &mut work);
-        let _ = scheme.surveyed(&mut work, &mut Survey::default());
+        let _ = motion.advance(scheme, dt);
     });
     let blocks = scheme.operators.blocks.len() as u64;
     let mean = |c: &Counts| Counts {

@@ -8,7 +8,7 @@ use crate::problem::Problem;
 use crate::run::dofs;
 use crate::state::State;
 use crate::step::phase::PHASES;
-use crate::step::{Loss, Phases, Survey, Work};
+use crate::step::{Loss, Motion, Phases};
 use cpu_time::ProcessTime;
 use std::time::{Duration, Instant};
 
@@ -71,10 +71,7 @@ impl Measured {
 /// The steps of a problem and what they have cost so far.
 struct Clocked<'a> {
     subject: &'a Subject,
-    state: State,
-    survey: Survey,
-    next: Survey,
-    work: Work,
+    motion: Motion,
     quietest: Phases,
     steps: usize,
     cpu: Duration,
@@ -84,19 +81,19 @@ struct Clocked<'a> {
 impl Clocked<'_> {
     /// Back to the start.
     fn rewind(&mut self) -> std::result::Result<(), Loss> {
-        self.state.clone_from(&self.subject.problem.state);
-        self.subject.problem.scheme.survey(&self.state, &self.work, &mut self.survey)
+        let Motion { state, survey, work, .. } = &mut self.motion;
+        let problem = &self.subject.problem;
+        state.clone_from(&problem.state);
+        problem.scheme.survey(state, work, survey)
     }
 
     /// One step and its survey; the last one of a wave ends at its end.
     fn step(&mut self) -> std::result::Result<(), Loss> {
         let Subject { problem: Problem { scheme, settings, .. }, h, .. } = self.subject;
-        let dt = (settings.courant * h / self.survey.fastest).min(settings.end - self.state.time);
-        scheme.step(&self.state, dt, &self.survey, &mut self.work);
-        scheme.surveyed(&mut self.work, &mut self.next)?;
-        std::mem::swap(&mut self.state, &mut self.work.next);
-        std::mem::swap(&mut self.survey, &mut self.next);
-        let phases = self.work.take_phases();
+        let Motion { state, survey, .. } = &self.motion;
+        let dt = (settings.courant * h / survey.fastest).min(settings.end - state.time);
+        self.motion.advance(scheme, dt)?;
+        let phases = self.motion.work.take_phases();
         self.quietest.seconds.iter_mut().zip(phases.seconds).for_each(|(least, s)| *least = least.min(s));
         self.steps += 1;
         Ok(())
@@ -104,7 +101,7 @@ impl Clocked<'_> {
 
     /// Whether the wave has run its way, to the rounding of its sum of steps.
     fn is_through(&self) -> bool {
-        self.state.time >= self.subject.problem.settings.end * (1.0 - 1e-12)
+        self.motion.state.time >= self.subject.problem.settings.end * (1.0 - 1e-12)
     }
 
     /// Timed steps until the wave is through or the length is reached; whether it is reached.
@@ -135,15 +132,11 @@ const UNKNOWN: Phases = Phases { seconds: [f64::INFINITY; PHASES] };
 pub fn measure(subject: &Subject, threads: usize, length: Length) -> Result<Measured> {
     pool(threads)?.install(|| {
         let Problem { scheme, state, .. } = &subject.problem;
-        let work = Work::new(scheme, state);
-        let (survey, zero) = (Survey::default(), Duration::ZERO);
-        let state = state.clone();
-        let next = survey.clone();
-        let mut clocked =
-            Clocked { subject, state, survey, next, work, quietest: UNKNOWN, steps: 0, cpu: zero, wall: zero };
+        let (motion, zero) = (Motion::unsurveyed(scheme, state.clone()), Duration::ZERO);
+        let mut clocked = Clocked { subject, motion, quietest: UNKNOWN, steps: 0, cpu: zero, wall: zero };
         let mut end = None;
         let outcome = steps(&mut clocked, length, &mut end);
-        outcome.map_err(|loss| unstable(&loss, &clocked.state))?;
+        outcome.map_err(|loss| unstable(&loss, &clocked.motion.state))?;
         Ok(finish(clocked, threads, end.as_ref()))
     })
 }
@@ -153,13 +146,13 @@ fn steps(clocked: &mut Clocked, length: Length, end: &mut Option<State>) -> std:
     clocked.rewind()?;
     clocked.step()?;
     clocked.rewind()?;
-    clocked.work.take_phases();
+    clocked.motion.work.take_phases();
     (clocked.steps, clocked.quietest) = (0, UNKNOWN);
     while !clocked.pass(length)? {
-        end.get_or_insert_with(|| clocked.state.clone());
+        end.get_or_insert_with(|| clocked.motion.state.clone());
         clocked.rewind()?;
         // The survey of the start belongs to no step.
-        clocked.work.take_phases();
+        clocked.motion.work.take_phases();
     }
     Ok(())
 }
@@ -167,9 +160,9 @@ fn steps(clocked: &mut Clocked, length: Length, end: &mut Option<State>) -> std:
 fn finish(clocked: Clocked, threads: usize, end: Option<&State>) -> Measured {
     let Subject { problem: Problem { scheme, body, .. }, wave, points, .. } = clocked.subject;
     let mesh = &body.mesh;
-    let error = errors(wave, mesh, scheme, end.unwrap_or(&clocked.state), &body.material).standard;
+    let error = errors(wave, mesh, scheme, end.unwrap_or(&clocked.motion.state), &body.material).standard;
     let phases = Phases { seconds: clocked.quietest.seconds.map(|s| s * clocked.steps as f64) };
-    let state = size_of_val(&clocked.state.u[..]);
+    let state = size_of_val(&clocked.motion.state.u[..]);
     Measured {
         threads,
         dofs: dofs(scheme),
@@ -180,7 +173,7 @@ fn finish(clocked: Clocked, threads: usize, end: Option<&State>) -> Measured {
         cpu: clocked.cpu.as_secs_f64(),
         wall: clocked.wall.as_secs_f64(),
         phases,
-        bytes: scheme.operators.bytes() + clocked.work.bytes() + state,
+        bytes: scheme.operators.bytes() + clocked.motion.work.bytes() + state,
         error,
     }
 }

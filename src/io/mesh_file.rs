@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::store::{ArrayRef, Format, Store, write_arrays};
 use crate::error::Result;
-use crate::mesh::{BoundaryEdge, Mesh};
+use crate::mesh::{BoundaryEdge, FACES, Mesh};
 
 /// The format of `mesh.h5`.
 pub const FORMAT: Format = Format { name: "dgmpm mesh", version: 1, remedy: "write it again by `dgmpm mesh`" };
@@ -65,7 +65,7 @@ fn fault(mesh: &Mesh) -> Option<String> {
     if let Some(c) = mesh.cell_group.iter().position(|&g| g >= mesh.groups.len()) {
         return Some(format!("cell {c} is of group {}, but there are {}", mesh.cell_group[c], mesh.groups.len()));
     }
-    let good_edge = |e: &BoundaryEdge| e.cell < cells && e.face < 4 && e.group < mesh.edge_groups.len();
+    let good_edge = |e: &BoundaryEdge| e.cell < cells && e.face < FACES && e.group < mesh.edge_groups.len();
     let bad_edge = mesh.edges.iter().position(|e| !good_edge(e))?;
     Some(format!("boundary edge {bad_edge} refers to a cell, face or group that does not exist"))
 }

@@ -11,6 +11,8 @@ use std::path::{Path, PathBuf};
 
 use super::store::{ArrayRef, Format, Store, write_arrays};
 use crate::error::{Error, Result};
+use crate::state::UNKNOWNS;
+use crate::tensor::AXES;
 
 /// The format of snapshots.
 pub const FORMAT: Format = Format { name: "dgmpm snapshot", version: 1, remedy: "write it again by `dgmpm solve`" };
@@ -62,17 +64,17 @@ impl GridFiles {
 impl Snapshot {
     /// Number of cells in the list of unknowns.
     pub fn cells(&self) -> usize {
-        self.u.len() / (6 * (self.degree + 1).pow(2))
+        self.u.len() / (UNKNOWNS * (self.degree + 1).pow(2))
     }
 
     /// The first `components` of F, p, u as `[cell][component][node]`. u is 0 if the snapshot has no displacement.
     pub fn unknowns(&self, components: usize) -> Vec<f64> {
         let nodes = (self.degree + 1).pow(2);
         let mut all = Vec::with_capacity(self.cells() * components * nodes);
-        for (cell, unknowns) in self.u.chunks(6 * nodes).enumerate() {
+        for (cell, unknowns) in self.u.chunks(UNKNOWNS * nodes).enumerate() {
             all.extend_from_slice(unknowns);
             let (others, wanted) =
-                (self.displacement.get(2 * nodes * cell..).unwrap_or_default(), (components - 6) * nodes);
+                (self.displacement.get(AXES * nodes * cell..).unwrap_or_default(), (components - UNKNOWNS) * nodes);
             all.extend(others.iter().copied().chain(std::iter::repeat(0.0)).take(wanted));
         }
         all
@@ -85,8 +87,12 @@ impl Snapshot {
 
     fn fault(&self) -> Option<String> {
         let nodes = (self.degree + 1).pow(2);
-        if !self.u.len().is_multiple_of(6 * nodes) {
-            return Some(format!("{} unknowns are no multiple of 6 x {nodes} (degree {})", self.u.len(), self.degree));
+        if !self.u.len().is_multiple_of(UNKNOWNS * nodes) {
+            return Some(format!(
+                "{} unknowns are no multiple of {UNKNOWNS} x {nodes} (degree {})",
+                self.u.len(),
+                self.degree
+            ));
         }
         let wanted = 2 * nodes * self.cells();
         let given = self.displacement.len();
@@ -109,7 +115,7 @@ impl Snapshot {
             ("time", vec![], ArrayRef::F64(&[self.time])),
             ("step", vec![1], ArrayRef::Index(&[self.step])),
             ("degree", vec![1], ArrayRef::Index(&[self.degree])),
-            ("u", vec![self.cells(), 6, side, side], ArrayRef::F64(&self.u)),
+            ("u", vec![self.cells(), UNKNOWNS, side, side], ArrayRef::F64(&self.u)),
             ("displacement", vec![moved, 2, side, side], ArrayRef::F64(&self.displacement)),
             ("unheld", vec![unheld, 2, side, side], ArrayRef::F64(&self.unheld)),
             ("internal", vec![self.internal.len()], ArrayRef::F64(&self.internal)),
@@ -142,7 +148,7 @@ impl Snapshot {
             time: store.real("time")?,
             step,
             degree,
-            u: store.reals("u", &[6, side, side])?,
+            u: store.reals("u", &[UNKNOWNS, side, side])?,
             displacement: store.reals("displacement", &[2, side, side])?,
             internal: store.reals("internal", &[])?,
         })

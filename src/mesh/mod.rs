@@ -81,8 +81,11 @@ pub struct BoundaryEdge {
     pub group: usize,
 }
 
+/// Faces of a cell: xi1 = 0, xi1 = 1, xi2 = 0, xi2 = 1.
+pub const FACES: usize = 4;
+
 /// Corners (first, last) of local face f, in the direction of increasing parent coordinate.
-pub const FACE_CORNERS: [[usize; 2]; 4] = [[0, 3], [1, 2], [0, 1], [3, 2]];
+pub const FACE_CORNERS: [[usize; 2]; FACES] = [[0, 3], [1, 2], [0, 1], [3, 2]];
 
 /// The other side of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

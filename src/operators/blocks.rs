@@ -3,7 +3,7 @@
 use super::order;
 use super::sides::{Across, Gathered, Neighbour, Plan, Side, joined};
 use crate::lane::{F8, LANES};
-use crate::mesh::Link;
+use crate::mesh::{FACES, Link};
 
 /// The blocks; the last one of a law is padded with its last cell.
 ///
@@ -22,16 +22,16 @@ pub struct Blocks {
     /// Block and lane of each cell.
     pub slot: Vec<(usize, usize)>,
     /// The other side of each block, local face and lane.
-    pub neighbours: Vec<[[Neighbour; LANES]; 4]>,
+    pub neighbours: Vec<[[Neighbour; LANES]; FACES]>,
     /// For each block and local face, how its other side is read.
-    pub plan: Vec<[Plan; 4]>,
+    pub plan: Vec<[Plan; FACES]>,
     /// Other sides at different places. The other side of a lane at a boundary, or of a padding lane, is this lane itself.
     pub gathered: Vec<Gathered>,
 }
 
 impl Blocks {
     /// Blocks for cells with the given laws and links.
-    pub fn new(material: &[usize], links: &[[Link; 4]]) -> Self {
+    pub fn new(material: &[usize], links: &[[Link; FACES]]) -> Self {
         let graph: Vec<Vec<usize>> = links.iter().map(|links| cells_of(links).collect()).collect();
         let own = Self::in_order(material, links, (0..links.len()).collect());
         if own.gathered.is_empty() {
@@ -43,7 +43,7 @@ impl Blocks {
     }
 
     /// Blocks of the cells of each law in an `order`, side by side.
-    fn in_order(material: &[usize], links: &[[Link; 4]], order: Vec<usize>) -> Self {
+    fn in_order(material: &[usize], links: &[[Link; FACES]], order: Vec<usize>) -> Self {
         let mut of_law = vec![vec![]; material.iter().max().map_or(0, |last| last + 1)];
         order.into_iter().for_each(|cell| of_law[material[cell]].push(cell));
         let lists: Vec<&[usize]> = of_law.iter().flat_map(|cells: &Vec<usize>| cells.chunks(LANES)).collect();
@@ -62,9 +62,9 @@ impl Blocks {
 
     /// The distance of a block from its farthest neighbour, the median over all blocks, as in [`order::narrow`].
     fn reach(&self) -> usize {
-        let of = |(block, neighbours): (usize, &[[Neighbour; LANES]; 4])| {
+        let of = |(block, neighbours): (usize, &[[Neighbour; LANES]; FACES])| {
             let far = neighbours.iter().flatten().map(|neighbour| match neighbour {
-                Neighbour::Cell(across) | Neighbour::Interface(across, _) => block.abs_diff(across.face / 4),
+                Neighbour::Cell(across) | Neighbour::Interface(across, _) => block.abs_diff(across.face / FACES),
                 Neighbour::Boundary(_) | Neighbour::Padding => 0,
             });
             far.max().unwrap_or(0)
@@ -73,7 +73,7 @@ impl Blocks {
     }
 
     /// Blocks of `lists` of cells of one law, in an `order`.
-    fn of_lists(material: &[usize], links: &[[Link; 4]], lists: &[&[usize]], order: &[usize]) -> Self {
+    fn of_lists(material: &[usize], links: &[[Link; FACES]], lists: &[&[usize]], order: &[usize]) -> Self {
         let mut blocks = Self {
             cells: vec![],
             count: vec![],
@@ -101,8 +101,9 @@ impl Blocks {
 
     fn plan_of(&mut self, block: usize, face: usize) -> Plan {
         let lanes = self.neighbours[block][face];
-        let special = lanes.iter().any(|n| matches!(n, Neighbour::Boundary(_) | Neighbour::Interface(..)));
-        let own = |lane: usize| Across { face: 4 * block + face, lane, flip: false };
+        let has_boundary_or_interface =
+            lanes.iter().any(|n| matches!(n, Neighbour::Boundary(_) | Neighbour::Interface(..)));
+        let own = |lane: usize| Across { face: FACES * block + face, lane, flip: false };
         // A padding lane stays at rest only if its other side is the lane itself. So a block with padding is never aligned.
         let (mut across, mut source, mut aligned) = ([own(0); LANES], None, self.count[block] == LANES);
         for (lane, neighbour) in lanes.iter().enumerate() {
@@ -115,13 +116,13 @@ impl Blocks {
             }
         }
         if aligned {
-            return Plan { side: Side::Aligned(source.unwrap_or(4 * block + face)), special };
+            return Plan { side: Side::Aligned(source.unwrap_or(FACES * block + face)), has_boundary_or_interface };
         }
         if let Some(side) = joined(&across, &lanes).filter(|_| self.count[block] == LANES) {
-            return Plan { side, special };
+            return Plan { side, has_boundary_or_interface };
         }
         self.gathered.push(Gathered::of(&across));
-        Plan { side: Side::Gathered(self.gathered.len() - 1), special }
+        Plan { side: Side::Gathered(self.gathered.len() - 1), has_boundary_or_interface }
     }
 
     /// Number of blocks.
@@ -142,7 +143,7 @@ impl Blocks {
             + std::mem::size_of_val(&self.gathered[..])
     }
 
-    fn neighbours_of(&self, block: usize, material: &[usize], links: &[[Link; 4]]) -> [[Neighbour; LANES]; 4] {
+    fn neighbours_of(&self, block: usize, material: &[usize], links: &[[Link; FACES]]) -> [[Neighbour; LANES]; FACES] {
         let law = self.material[block];
         std::array::from_fn(|face| {
             std::array::from_fn(|lane| {
@@ -153,7 +154,7 @@ impl Blocks {
                     Link::Boundary(group) => Neighbour::Boundary(group),
                     Link::Cell { cell, face, flip } => {
                         let (block, lane) = self.slot[cell];
-                        let across = Across { face: 4 * block + face, lane, flip };
+                        let across = Across { face: FACES * block + face, lane, flip };
                         if material[cell] == law {
                             Neighbour::Cell(across)
                         } else {
@@ -189,6 +190,6 @@ impl Blocks {
 }
 
 /// The cells across the faces of a cell.
-fn cells_of(links: &[Link; 4]) -> impl Iterator<Item = usize> {
+fn cells_of(links: &[Link; FACES]) -> impl Iterator<Item = usize> {
     links.iter().filter_map(Link::cell)
 }

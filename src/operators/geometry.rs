@@ -5,7 +5,7 @@
 
 use super::{Blocks, Line};
 use crate::lane::{F8, LANES, Lane, Lanes, load_array};
-use crate::mesh::{Mesh, map};
+use crate::mesh::{FACES, Mesh, map};
 
 /// The map of a cell, or with [`F8`] of the 8 cells of a block; m.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Metric<T> {
     /// d2X/dxi1 dxi2; 0 for parallelograms.
     twist: [T; 2],
     /// 1 / lengths of the faces, 1/m.
-    inverse_length: [T; 4],
+    inverse_length: [T; FACES],
     /// h_e.
     pub h: T,
 }
@@ -126,12 +126,12 @@ impl Geometry {
             along1: [0, 1].map(|k| number(&|x| x[1][k] - x[0][k])),
             along2: [0, 1].map(|k| number(&|x| x[3][k] - x[0][k])),
             twist: [0, 1].map(|k| number(&|x| (x[0][k] - x[1][k]) + (x[2][k] - x[3][k]))),
-            inverse_length: [F8::ZERO; 4],
+            inverse_length: [F8::ZERO; FACES],
             h: number(&map::h_e),
         };
         for lane in 0..LANES {
             let one = metric.lane(lane);
-            for face in 0..4 {
+            for face in 0..FACES {
                 let n = one.face(face);
                 metric.inverse_length[face].0[lane] = 1.0 / n[0].hypot(n[1]);
             }

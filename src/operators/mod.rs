@@ -28,7 +28,7 @@ pub use stored::Stored;
 
 use crate::basis::Lagrange;
 use crate::error::Error;
-use crate::mesh::{Link, Mesh};
+use crate::mesh::{FACES, Link, Mesh};
 
 /// Everything that the step needs of mesh and cloud.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +63,7 @@ impl Operators {
     ///
     /// # Errors
     /// A cell whose points cannot carry Q_N, by number and with the remedy.
-    pub fn build(mesh: &Mesh, links: &[[Link; 4]], material: &[usize], needs: &Needs) -> Result<Self, Error> {
+    pub fn build(mesh: &Mesh, links: &[[Link; FACES]], material: &[usize], needs: &Needs) -> Result<Self, Error> {
         let (line, blocks) = (Line::new(needs.degree), Blocks::new(material, links));
         let stored = Stored::build(mesh, &blocks, &line, needs)?;
         Ok(Self::assemble(mesh, line, blocks, needs, stored))

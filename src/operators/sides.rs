@@ -53,7 +53,7 @@ pub struct Plan {
     /// The places of the other side.
     pub side: Side,
     /// Whether a lane is at a boundary or at another material.
-    pub special: bool,
+    pub has_boundary_or_interface: bool,
 }
 
 /// The lanes whose other sides are in one face.

@@ -125,6 +125,7 @@ impl Scene {
             flux: self.scheme.flux,
             boundaries,
             sources,
+            corrections: vec![],
             // Constants have no curl.
             curl: curl.filter(|_| self.scheme.degree > 0),
             kernel,

@@ -3,7 +3,7 @@
 use super::Problem;
 use crate::operators::Certificate;
 use crate::run::Kept;
-use crate::step::{Loss, Survey, Work};
+use crate::step::{Loss, Motion, Survey};
 use std::time::Instant;
 
 /// What a run will cost.
@@ -30,23 +30,21 @@ impl Problem {
     /// A state that is not healthy at a point or a face.
     pub fn cost(&self) -> Result<Cost, Loss> {
         let Self { scheme, state, settings, .. } = self;
-        let mut work = Work::new(scheme, state);
-        let mut survey = Survey::default();
-        scheme.survey_all(state, &work, &mut survey)?;
-        let dt = settings.courant * self.body.smallest_h() / survey.fastest;
+        let mut motion = Motion::new(scheme, state.clone())?;
+        let dt = settings.courant * self.body.smallest_h() / motion.survey.fastest;
         let steps = ((settings.end - state.time) / dt).ceil();
         let mut trial = || {
             let clock = Instant::now();
-            scheme.step(state, dt, &survey, &mut work);
             // What becomes of the first step is for the run to say.
-            let _ = scheme.surveyed(&mut work, &mut survey.clone());
+            let _ = motion.attempt(scheme, dt);
             clock.elapsed().as_secs_f64()
         };
         // The first trial touches the memory for the first time.
         let _ = trial();
         let seconds = trial() * steps;
         let states = size_of_val(&state.u[..]) + size_of_val(&state.internal[..]) + Kept::bytes(state);
-        let bytes = scheme.operators.bytes() + work.bytes() + states;
+        let bytes = scheme.operators.bytes() + motion.work.bytes() + states;
+        let survey = motion.survey;
         let certificates = self.certificates(&survey);
         Ok(Cost { survey, dt, steps, seconds, bytes, certificates })
     }

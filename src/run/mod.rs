@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::observe::{Observer, View};
 use crate::state::State;
-use crate::step::{Balance, EnergyMade, Loss, Scheme, Survey, Work};
+use crate::step::{Balance, EnergyMade, Motion, Scheme, Survey};
 use std::sync::atomic::{AtomicBool, Ordering};
 use watch::Alarm;
 
@@ -119,51 +119,52 @@ impl Run<'_, '_> {
         state: &mut State,
         report: &mut Report,
     ) -> Result<End, Stop> {
-        let mut work = Work::new(self.scheme, state);
+        let mut motion = Motion::unsurveyed(self.scheme, std::mem::take(state));
         if self.observers.iter().any(|observer| observer.wants_balance()) {
-            work = work.with_balance(self.scheme);
+            motion = motion.with_balance(self.scheme);
         }
-        let mut survey = Survey::default();
-        let sick = |loss: Loss| Stop::from(Kept::new(state, &Survey::default()).lost(loss, state, 0.0));
-        self.scheme.survey_all(state, &work, &mut survey).map_err(sick)?;
-        report.start(self.scheme, (state, &survey), &work, self.settings.watch);
-        let mut kept = Kept::new(state, &survey);
+        let end = self.go(pause, &mut motion, report);
+        *state = motion.state;
+        end
+    }
+
+    /// All steps to the end or to a pause.
+    fn go(&mut self, pause: &mut dyn Pause, motion: &mut Motion, report: &mut Report) -> Result<End, Stop> {
+        if let Err(loss) = motion.survey(self.scheme) {
+            return Err(Kept::new(&motion.state, &Survey::default()).lost(loss, &motion.state, 0.0).into());
+        }
+        report.start(self.scheme, motion, self.settings.watch);
+        let mut kept = Kept::new(&motion.state, &motion.survey);
         let h = self.smallest_h();
-        let mut next = survey.clone();
-        while state.time < self.settings.end {
-            let stop = pause.stop(state.time).unwrap_or(f64::INFINITY).min(self.next_stop(state.time));
-            let dt = step_size(stop - state.time, self.settings.courant * h / survey.fastest);
-            self.observe(state, &survey, report.balance.as_ref(), dt)?;
+        while motion.state.time < self.settings.end {
+            let time = motion.state.time;
+            let stop = pause.stop(time).unwrap_or(f64::INFINITY).min(self.next_stop(time));
+            let dt = step_size(stop - time, self.settings.courant * h / motion.survey.fastest);
+            self.observe(motion, report.balance.as_ref(), dt)?;
             if self.interrupt.load(Ordering::Relaxed) {
                 return Err(Stop::Interrupted);
             }
-            let balance = report.balance.as_ref();
-            if pause.due(&View { mesh: self.mesh, scheme: self.scheme, state, survey: &survey, balance, dt }) {
+            if pause.due(&view(self.mesh, self.scheme, motion, report.balance.as_ref(), dt)) {
                 return Ok(End::Paused);
             }
-            self.scheme.step(state, dt, &survey, &mut work);
-            // A step that is meant to end at the end of the run or at an exact time ends there to the last bit.
-            if (stop - work.next.time).abs() < 1e-9 * dt {
-                work.next.time = stop;
+            if let Err(loss) = motion.advance_to(self.scheme, dt, end_of_step(time, dt, stop)) {
+                return Err(kept.lost(loss, &motion.state, dt).into());
             }
-            if let Err(loss) = self.scheme.surveyed(&mut work, &mut next) {
-                return Err(kept.lost(loss, state, dt).into());
-            }
-            std::mem::swap(state, &mut work.next);
-            std::mem::swap(&mut survey, &mut next);
-            kept.look(&mut work.next, &next);
-            match report.count(self.scheme, dt, (state, &survey), &mut work) {
+            let (former, survey) = motion.former();
+            kept.look(former, survey);
+            match report.count(self.scheme, dt, motion) {
                 Some(Alarm::Stop(made)) => return Err(Stop::EnergyMade(Box::new((made, kept.earlier())))),
                 Some(Alarm::Warning(made)) => self.observers.iter_mut().for_each(|o| o.energy_made(&made)),
                 None => {}
             }
         }
         // No step looks at the faces of the last state.
-        if let Err(loss) = self.scheme.survey_all(state, &work, &mut next) {
-            return Err(kept.lost(loss, state, 0.0).into());
+        let mut last = Survey::default();
+        if let Err(loss) = self.scheme.survey_all(&motion.state, &motion.work, &mut last) {
+            return Err(kept.lost(loss, &motion.state, 0.0).into());
         }
-        report.see(&next);
-        self.observe(state, &survey, report.balance.as_ref(), 0.0)?;
+        report.see(&last);
+        self.observe(motion, report.balance.as_ref(), 0.0)?;
         Ok(End::Done)
     }
 
@@ -180,14 +181,26 @@ impl Run<'_, '_> {
     }
 
     /// Shows the state to those who wait for it.
-    fn observe(&mut self, state: &State, survey: &Survey, balance: Option<&Balance>, dt: f64) -> Result<(), Error> {
+    fn observe(&mut self, motion: &Motion, balance: Option<&Balance>, dt: f64) -> Result<(), Error> {
+        let view = view(self.mesh, self.scheme, motion, balance, dt);
         for observer in &mut self.observers {
-            if observer.schedule().due(state.step, state.time, dt) {
-                observer.observe(&View { mesh: self.mesh, scheme: self.scheme, state, survey, balance, dt })?;
+            if observer.schedule().due(view.state.step, view.state.time, dt) {
+                observer.observe(&view)?;
             }
         }
         Ok(())
     }
+}
+
+/// What observers and pauses see before a step of `dt`.
+fn view<'a>(mesh: &'a Mesh, scheme: &'a Scheme, motion: &'a Motion, balance: Option<&'a Balance>, dt: f64) -> View<'a> {
+    View { mesh, scheme, state: &motion.state, survey: &motion.survey, balance, dt }
+}
+
+/// The time after a step: one that is meant to end at the end of the run or at an exact time ends there to the last bit.
+fn end_of_step(time: f64, dt: f64, stop: f64) -> f64 {
+    let end = time + dt;
+    if (stop - end).abs() < 1e-9 * dt { stop } else { end }
 }
 
 /// The stable step, shortened evenly over the last ones before a time that lies `rest` ahead.

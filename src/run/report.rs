@@ -4,7 +4,7 @@ use super::Kept;
 use super::watch::{Alarm, Limits, Watch};
 use crate::state::{State, UNKNOWNS};
 use crate::step::phase::{NAMES, Phases};
-use crate::step::{Balance, Scheme, Survey, Totals, Work};
+use crate::step::{Balance, Motion, Scheme, Survey, Totals};
 use cpu_time::ProcessTime;
 use serde_json::{Map, Value, json};
 use std::time::Instant;
@@ -60,13 +60,8 @@ impl Default for Report {
 }
 
 impl Report {
-    pub(super) fn start(
-        &mut self,
-        scheme: &Scheme,
-        (state, survey): (&State, &Survey),
-        work: &Work,
-        limits: Option<Limits>,
-    ) {
+    pub(super) fn start(&mut self, scheme: &Scheme, motion: &Motion, limits: Option<Limits>) {
+        let Motion { state, survey, work, .. } = motion;
         self.see(survey);
         // After a pause the clocks and the balance go on.
         if self.first.is_none() {
@@ -81,14 +76,9 @@ impl Report {
         self.bytes = self.bytes.max(scheme.operators.bytes() + work.bytes() + state + Kept::bytes(start));
     }
 
-    /// Counts a step of `dt` that led to `state`; what the watch over the energy says of it.
-    pub(super) fn count(
-        &mut self,
-        scheme: &Scheme,
-        dt: f64,
-        (state, survey): (&State, &Survey),
-        work: &mut Work,
-    ) -> Option<Alarm> {
+    /// Counts a step of `dt` that led to the state of `motion`; what the watch over the energy says of it.
+    pub(super) fn count(&mut self, scheme: &Scheme, dt: f64, motion: &mut Motion) -> Option<Alarm> {
+        let Motion { state, survey, work, .. } = motion;
         self.steps += 1;
         self.updates += (dofs(scheme) * scheme.stages()) as f64;
         self.dt = [self.dt[0].min(dt), self.dt[1].max(dt)];

@@ -82,7 +82,7 @@ impl Watch {
 
     /// Books the last step, which led to `state`, and looks at the energy where that is due.
     pub fn step(&mut self, scheme: &Scheme, state: &State, work: &Work, balance: Option<&Balance>) -> Option<Alarm> {
-        let [boundary, sources] = work.given();
+        let [boundary, sources] = work.external_work();
         self.work = [self.work[0] + boundary, self.work[1] + sources];
         self.scale = self.scale.max(self.work[0] + self.work[1]);
         let limits = self.limits?;

@@ -2,6 +2,7 @@
 
 use super::tiles::Slot;
 use crate::lane::{F8, LANES, Lanes, load_array, load_lanes};
+use crate::mesh::FACES;
 use crate::operators::sides::Gathered;
 
 /// All traces under way.
@@ -18,12 +19,12 @@ pub(super) struct Traces<'a> {
 }
 
 impl<'a> Traces<'a> {
-    /// The array of a face, numbered 4 block + local face, with `length` numbers each, and where in it those before it end.
+    /// The array of a face, numbered FACES block + local face, with `length` numbers each, and where in it those before it end.
     #[inline(always)]
     fn find(&self, face: usize, length: usize) -> (&'a [F8], usize) {
-        let slot = self.slots[face / 4];
+        let slot = self.slots[face / FACES];
         let all = if slot.store == 0 { self.own } else { self.of_tiles(slot.store) };
-        (all, (4 * slot.index as usize + face % 4) * length)
+        (all, (FACES * slot.index as usize + face % FACES) * length)
     }
 
     /// What tiles show. (No call, before which sums in registers would have to be stored: 10 % of a flux at S1.)

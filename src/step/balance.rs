@@ -30,7 +30,8 @@
 use super::{Scheme, Work};
 use crate::lane::{F8, Lanes, load_array};
 use crate::riemann::tangent;
-use crate::tensor::{dot, times};
+use crate::state::UNKNOWNS;
+use crate::tensor::{DEFORMATION, dot, times};
 
 /// The balance of energy since the start of a run, in J per metre of thickness.
 ///
@@ -52,6 +53,8 @@ pub struct Balance {
     pub boundary_dissipation: f64,
     /// Loss by the control of the curl: the energy before minus that after.
     pub curl_dissipation: f64,
+    /// Loss by corrections ([`super::Correction`]): the energy before them minus that after; of either sign.
+    pub correction_dissipation: f64,
     /// Loss by regrids: the energy on the old grid minus that on the new one; of either sign for the strain energy.
     pub regrid_dissipation: f64,
     /// D and the loss at the boundary, see above: what jumps alone would take if time were integrated exactly.
@@ -77,7 +80,8 @@ impl Balance {
 
     /// All that was lost by a known cause.
     pub fn dissipation(&self) -> f64 {
-        self.flux_dissipation + self.boundary_dissipation + self.curl_dissipation + self.regrid_dissipation
+        let by_step = self.flux_dissipation + self.boundary_dissipation + self.curl_dissipation;
+        by_step + self.regrid_dissipation + self.correction_dissipation
     }
 
     /// What no entry explains of the `energy` (with plastic dissipation) that is there now: rounding, unless an entry is missing.
@@ -88,14 +92,14 @@ impl Balance {
 
 /// The balance of one block over one step, a lane a cell, J/m.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Sums {
+pub(super) struct BlockBalance {
     /// The power of jumps between cells; of an inner face each side has half.
     pub flux: F8,
     /// The power of what the boundary condition differs from the trace of the body.
     pub boundary: F8,
     /// The energy, with what plastic flow has dissipated, after the corrector.
     pub corrected: F8,
-    /// And after the control of the curl: that of the new state.
+    /// And that of the new state, after the control of the curl and corrections.
     pub energy: F8,
 }
 
@@ -106,7 +110,7 @@ pub(super) struct FacePower<'a> {
     /// That of '+', with the normal of '-'; where there is no cell, again '-'.
     pub plus: &'a [F8],
     /// Flux*.
-    pub flux: &'a [F8; 6],
+    pub flux: &'a [F8; UNKNOWNS],
 }
 
 impl FacePower<'_> {
@@ -114,16 +118,16 @@ impl FacePower<'_> {
     #[inline(always)]
     pub fn jumps<L: Lanes, const W: usize>(&self, weight: &F8, normal: [L; 2], dissipation: &mut F8) {
         let (m, p) = (load_array::<L, W>(self.minus), load_array::<L, W>(self.plus));
-        let x = load_array::<L, 6>(self.flux);
+        let x = load_array::<L, UNKNOWNS>(self.flux);
         let g = [x[0], x[1], x[2], x[3]];
         let (v, a) = (times(g, normal), times(g, tangent(normal)));
         let half = L::splat(0.5);
         let mut power = L::zero();
         for i in 0..2 {
-            let star_v = -v[i] - half * (m[4 + i] + p[4 + i]);
-            let star_t = -x[4 + i] - half * (m[6 + i] + p[6 + i]);
-            power = star_v.mul_add(p[6 + i] - m[6 + i], power);
-            power = star_t.mul_add(p[4 + i] - m[4 + i], power);
+            let star_v = -v[i] - half * (m[DEFORMATION + i] + p[DEFORMATION + i]);
+            let star_t = -x[DEFORMATION + i] - half * (m[UNKNOWNS + i] + p[UNKNOWNS + i]);
+            power = star_v.mul_add(p[UNKNOWNS + i] - m[UNKNOWNS + i], power);
+            power = star_t.mul_add(p[DEFORMATION + i] - m[DEFORMATION + i], power);
             power = power - a[i] * (p[W - 2 + i] - m[W - 2 + i]);
         }
         add(half * L::load(weight), power, dissipation);
@@ -132,17 +136,17 @@ impl FacePower<'_> {
 
 /// t*.v*, W/m^2: what a boundary condition with this flux gives to the body.
 #[inline]
-pub(super) fn boundary_power(flux: &[f64; 6], normal: [f64; 2]) -> f64 {
+pub(super) fn boundary_power(flux: &[f64; UNKNOWNS], normal: [f64; 2]) -> f64 {
     // v* = -G N and t* = -g.
     dot(times([flux[0], flux[1], flux[2], flux[3]], normal), [flux[4], flux[5]])
 }
 
 /// (v* - v).(t* - t) + a.s, W/m^2, in a lane with the trace `own`, s = P T being its last two numbers.
-pub(super) fn boundary_loss(own: &[F8], flux: &[f64; 6], normal: [f64; 2], lane: usize) -> f64 {
+pub(super) fn boundary_loss(own: &[F8], flux: &[f64; UNKNOWNS], normal: [f64; 2], lane: usize) -> f64 {
     let of = |k: usize| [own[k].0[lane], own[k + 1].0[lane]];
     let g = [flux[0], flux[1], flux[2], flux[3]];
-    let (v, t, s, back) = (of(4), of(6), of(own.len() - 2), times(g, normal));
-    let jump = |i: usize| (-back[i] - v[i]) * (-flux[4 + i] - t[i]);
+    let (v, t, s, back) = (of(DEFORMATION), of(UNKNOWNS), of(own.len() - 2), times(g, normal));
+    let jump = |i: usize| (-back[i] - v[i]) * (-flux[DEFORMATION + i] - t[i]);
     jump(0) + jump(1) + dot(times(g, tangent(normal)), s)
 }
 
@@ -156,7 +160,7 @@ impl Work {
     /// With the memory that the balance of energy needs; the steps then meter it.
     pub fn with_balance(mut self, scheme: &Scheme) -> Self {
         self.tiles.widen(scheme);
-        self.balance = Some(vec![Sums::default(); scheme.operators.blocks.len()]);
+        self.balance = Some(vec![BlockBalance::default(); scheme.operators.blocks.len()]);
         self
     }
 
@@ -169,19 +173,21 @@ impl Work {
     pub fn settle(&self, scheme: &Scheme, balance: &mut Balance) {
         let Some(blocks) = &self.balance else { return };
         let (mut flux, mut boundary, mut corrected, mut energy) = (0.0, 0.0, 0.0, 0.0);
-        for (sums, &count) in blocks.iter().zip(&scheme.operators.blocks.count) {
+        for (block, &count) in blocks.iter().zip(&scheme.operators.blocks.count) {
             for lane in 0..count {
-                flux += sums.flux.0[lane];
-                boundary += sums.boundary.0[lane];
-                corrected += sums.corrected.0[lane];
-                energy += sums.energy.0[lane];
+                flux += block.flux.0[lane];
+                boundary += block.boundary.0[lane];
+                corrected += block.corrected.0[lane];
+                energy += block.energy.0[lane];
             }
         }
-        let [by_boundary, by_sources] = self.given();
+        let [by_boundary, by_sources] = self.external_work();
         balance.boundary_work += by_boundary;
         balance.source_work += by_sources;
         balance.jumps += flux + boundary;
-        balance.curl_dissipation += corrected - energy;
+        let corrections = self.corrections.as_ref().map_or(0.0, |memory| memory.loss);
+        balance.correction_dissipation += corrections;
+        balance.curl_dissipation += corrected - (energy + corrections);
         let lost = balance.energy + (by_boundary + by_sources) - corrected;
         let all = flux.abs() + boundary.abs();
         let at_boundary = if all > 0.0 { lost * (boundary.abs() / all) } else { 0.0 };

@@ -1,32 +1,29 @@
-//! `begin`: what a block does alone. ADER: G2P, predictor, averages; RK: the stage; both: volume term, traces.
+//! `Begin`: what a block does alone in a stage. ADER: grid to points (22), predictor (15)-(21), points to grid (18); RK: the state
+//! of the stage. Both: volume term (11)-(12) and traces.
 
-use super::balance::Sums;
-use super::health::FacePoint;
-use super::outside::{Given, SourceStage};
+use super::balance::BlockBalance;
+use super::block::Block;
+use super::displacement::{DisplacementRate, MeanDisplacement};
+use super::loss::FacePoint;
+use super::outside::ExternalWork;
 use super::phase::Clock;
-use super::predictor::Predictor;
 use super::predictor::transfer::{FieldsToPoints, ToNodes};
-use super::stage::AtNodes;
-use super::sums::Terms;
-use super::survey::Worst;
+use super::predictor::{self, Predictor};
+use super::sources::AddSources;
 use super::volume::{self, with_nodes};
-use super::{Method, Phase, Scheme, Scratch, Stage};
-use crate::lane::{Coefficient, F8, LANES, Lanes, Work, prefetch};
-use crate::material::Material;
-use crate::mesh::map;
-use crate::operators::{PointMatrices, Points, Share};
+use super::worst::Worst;
+use super::{Method, Phase, Scratch};
+use crate::lane::{Coefficient, F8, Lanes, Work, prefetch};
+use crate::operators::{PointMatrices, Share};
 use crate::riemann::Looks;
 use crate::state::{State, UNKNOWNS};
+use crate::tensor::DEFORMATION;
 use crate::with_law;
 
 /// The work on one block.
-pub(super) struct Block<'a> {
-    /// The scheme.
-    pub scheme: &'a Scheme,
-    /// The stage.
-    pub stage: &'a Stage<'a>,
+pub(super) struct Begin<'a> {
     /// The block.
-    pub block: usize,
+    pub block: Block<'a>,
     /// The block that begins after it, if there is one.
     pub later: Option<usize>,
     /// The state at t_n.
@@ -37,315 +34,189 @@ pub(super) struct Block<'a> {
     pub rate: &'a mut [F8],
     /// Traces of this block (out).
     pub traces: &'a mut [F8],
-    /// The work that is done on it from outside (begun here at the first stage); none where nothing outside touches it.
-    pub given: Option<&'a mut Given>,
-    /// Its balance of energy (begun here at the first stage); none where it is off.
-    pub sums: Option<&'a mut Sums>,
+    /// The work that is done on it from outside; none where nothing outside touches it.
+    pub external: Option<&'a mut ExternalWork>,
+    /// Its balance of energy; none where it is off.
+    pub balance: Option<&'a mut BlockBalance>,
     /// The worst of the blocks so far.
     pub worst: &'a mut Worst,
     /// The thread's arrays.
     pub scratch: &'a mut Scratch,
 }
 
-/// G2P, predictor and P2G.
-struct Predict<'a, 'b>(&'a mut Block<'b>, &'a Points, &'a mut Clock);
+/// Runs `$body` with the point matrices of a block, and with those of the block that begins after it (to ask memory for them; where
+/// several blocks share one, the same). One `match` a block.
+macro_rules! with_matrices {
+    ($begin:expr, $points:expr, [$matrices:ident, $later:ident] => $body:expr) => {{
+        let pool = &$points.pool;
+        match pool.share[$begin.block.number] {
+            Share::Shared(k) => {
+                let ($matrices, $later) = (&pool.shared[k], &pool.shared[k]);
+                $body
+            }
+            Share::Own(k) => {
+                let later = match $begin.later.map(|later| pool.share[later]) {
+                    Some(Share::Own(later)) => later,
+                    _ => k,
+                };
+                let ($matrices, $later) = (&pool.own[k], &pool.own[later]);
+                $body
+            }
+        }
+    }};
+}
 
-impl Work for Predict<'_, '_> {
+impl Begin<'_> {
+    /// The phases.
+    pub fn run(mut self) {
+        let mut clock = self.scratch.phases.clock();
+        match &self.block.scheme.method {
+            Method::Ader { .. } => {
+                self.phase(Phase::GridToPoints, &mut clock, Self::grid_to_points);
+                self.phase(Phase::Predictor, &mut clock, Self::predictor);
+                self.phase(Phase::PointsToGrid, &mut clock, Self::points_to_grid);
+            }
+            Method::RungeKutta(_) => self.phase(Phase::Volume, &mut clock, Self::stage_at_nodes),
+        }
+        self.phase(Phase::Volume, &mut clock, Self::volume_term);
+        self.phase(Phase::Traces, &mut clock, Self::traces);
+    }
+
+    /// Does a phase, and books the time that it takes.
+    #[inline(always)]
+    fn phase(&mut self, phase: Phase, clock: &mut Clock, run: impl FnOnce(&mut Self)) {
+        run(self);
+        self.scratch.phases.book(phase, clock);
+    }
+
+    /// U_p = sum_a Phi_a(X_p) U_a (22), and b at the points.
+    fn grid_to_points(&mut self) {
+        let (block, Some(points)) = (self.block, self.block.points()) else { return };
+        let n = block.scheme.operators.nodes();
+        let fields = &block.unknowns(self.state)[..UNKNOWNS * n];
+        let Scratch { nodes, points: arrays, .. } = &mut *self.scratch;
+        let (nodes, between) = (&mut nodes.stage, &mut arrays.between);
+        with_matrices!(self, points, [matrices, later] => {
+            ask_for(later, 0);
+            let points = &mut arrays.start;
+            block.scheme.kernel.run(FieldsToPoints::<_, UNKNOWNS> { matrices, fields, nodes, between, points });
+        });
+        if !block.scheme.sources.is_empty() {
+            let count = block.scheme.operators.block_points(block.number);
+            block.sources_at_points(points, count, &mut arrays.source);
+        }
+    }
+
+    /// u_s,p <- U_p + dt sum_k At[s,k] r_k,p (15)-(21) and the averages over the step.
+    fn predictor(&mut self) {
+        let (block, Some(points)) = (self.block, self.block.points()) else { return };
+        let (internal, metric) = (block.internal(self.state), points.metric_of(block.number));
+        let arrays = &mut self.scratch.points;
+        with_matrices!(self, points, [matrices, later] => {
+            ask_for(later, 1);
+            block.scheme.kernel.run(Predict { block, matrices, metric, internal, arrays });
+        });
+    }
+
+    /// The averages of F, v and P by chi_p(X_a) (18).
+    fn points_to_grid(&mut self) {
+        let Some(points) = self.block.points() else { return };
+        let kernel = self.block.scheme.kernel;
+        let Scratch { nodes, points: arrays, .. } = &mut *self.scratch;
+        let between = &mut arrays.between;
+        with_matrices!(self, points, [matrices, later] => {
+            ask_for(later, 2);
+            let np = matrices.points();
+            let (points, nodes_of) = (&arrays.mean[..UNKNOWNS * np], &mut nodes.mean);
+            kernel.run(ToNodes::<_, UNKNOWNS> { matrices, points, between, nodes: nodes_of });
+            ask_for(later, 3);
+            let (points, nodes_of) = (&arrays.mean_stress[..DEFORMATION * np], &mut nodes.mean_stress);
+            kernel.run(ToNodes::<_, DEFORMATION> { matrices, points, between, nodes: nodes_of });
+        });
+    }
+
+    /// RK: U = U^n + dt sum_j a_ij k_j, and the law at the nodes.
+    fn stage_at_nodes(&mut self) {
+        self.block.stage_at_nodes(self.state, self.before, &mut self.scratch.nodes);
+    }
+
+    /// sum_b K_alpha[a,b] Flux_alpha(q_b) (11)-(12), with sources, and the rate of the displacement.
+    fn volume_term(&mut self) {
+        let (block, kernel, line) = (self.block, self.block.scheme.kernel, &self.block.scheme.operators.line);
+        let (metric, arrays, rate) = (block.metric(), &mut self.scratch.nodes, &mut *self.rate);
+        with_nodes!(line.m, M => kernel.run(volume::Volume::<'_, M> { line, metric, arrays, rate }));
+        let nodes = &mut self.scratch.nodes;
+        if !block.scheme.sources.is_empty() {
+            block.sources_at_nodes(&mut nodes.source);
+            block.find_masses(&mut nodes.masses);
+            let external = self.external.as_deref_mut();
+            kernel.run(AddSources { block, nodes, rate: self.rate, external });
+        }
+        if self.state.has_displacement() {
+            let count = block.scheme.operators.nodes();
+            kernel.run(DisplacementRate { mean: &nodes.mean, rate: self.rate, nodes: count });
+        }
+    }
+
+    /// q at the face points, and the wave speeds there.
+    fn traces(&mut self) {
+        let (block, kernel, line) = (self.block, self.block.scheme.kernel, &self.block.scheme.operators.line);
+        let (looks, metered) = (block.scheme.flux.looks(), self.balance.is_some());
+        let width = volume::width(looks, metered);
+        let with_displacement = looks == Looks::Displacement;
+        if with_displacement {
+            let (state, before, nodes) = (self.state, self.before, &mut self.scratch.nodes);
+            kernel.run(MeanDisplacement { block, state, before, nodes });
+        }
+        let (metric, arrays, traces) = (block.metric(), &self.scratch.nodes, &mut *self.traces);
+        with_nodes!(line.m, M => if metered {
+            kernel.run(volume::Traces::<'_, M, true> { line, metric, arrays, width, with_displacement, traces });
+        } else {
+            kernel.run(volume::Traces::<'_, M, false> { line, metric, arrays, width, with_displacement, traces });
+        });
+        // Later stages of RK are no states: what is wrong with them shows in the state that they make.
+        let worst = (block.stage.number == 0).then_some((&mut *self.worst, block.cells()));
+        let law = block.law();
+        if kernel.run(volume::Speeds { law, metric, width, looks, traces: self.traces, worst }) {
+            self.worst.lost_at(FacePoint::find(block.number, block.cells(), self.traces, width));
+        }
+    }
+}
+
+/// The predictor under the type of the law.
+struct Predict<'a, C> {
+    block: Block<'a>,
+    matrices: &'a PointMatrices<C>,
+    metric: &'a [F8],
+    internal: &'a [F8],
+    arrays: &'a mut predictor::Arrays,
+}
+
+impl<C: Coefficient> Work for Predict<'_, C> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self(block, points, clock) = self;
-        with_law!(&block.scheme.laws[block.scheme.operators.blocks.material[block.block]], law => {
+        let Self { block, matrices, metric, internal, arrays } = self;
+        let Method::Ader { time, sweeps } = &block.scheme.method else { return };
+        let (weights, dt, kernel) = (&time.weights[..], block.stage.dt, block.scheme.kernel);
+        with_law!(block.law(), law => {
             // A copy: what is stored in the predictor cannot change it, so its constants stay in registers.
-            let law = *law;
-            block.predict_with::<L, _>(&law, points, clock);
+            let law = &{ *law };
+            Predictor { law, matrices, metric, weights, sweeps, dt, internal, kernel }.run::<L>(arrays);
         });
     }
 }
 
-/// Sums of several stages.
-struct Sum<'a>(Terms<'a>, &'a [F8], &'a mut [F8]);
-
-impl Work for Sum<'_> {
-    type Out = ();
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        self.0.add_to::<L>(self.1, self.2);
-    }
-}
-
-/// J rho0 b at the nodes, and the displacement: what not every run has.
-struct Extras<'a, 'b>(&'a mut Block<'b>);
-
-impl Work for Extras<'_, '_> {
-    type Out = ();
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self(block) = self;
-        let operators = &block.scheme.operators;
-        let (n, density) = (operators.nodes(), block.scheme.laws[operators.blocks.material[block.block]].density());
-        let nodes = &block.scratch.nodes;
-        if !block.scheme.sources.is_empty() {
-            for (a, mass) in nodes.masses.iter().enumerate() {
-                let factor = L::splat(density / operators.line.basis.weight_2d(a)) * L::load(mass);
-                for k in 0..2 {
-                    let rate = &mut block.rate[(4 + k) * n + a];
-                    factor.mul_add(L::load(&nodes.source[k * n + a]), L::load(rate)).store(rate);
-                }
-            }
-            if let Some(given) = block.given.as_deref_mut() {
-                let (masses, mean, source) = (&nodes.masses, &nodes.mean, &nodes.source);
-                let factor = block.stage.dt * block.scheme.weight(block.stage.number);
-                SourceStage { density, factor, masses, mean, source, given }.add::<L>();
-            }
-        }
-        if block.state.has_displacement() {
-            for (a, mean) in nodes.mean.as_chunks::<6>().0.iter().enumerate() {
-                block.rate[UNKNOWNS * n + a] = mean[4];
-                block.rate[(UNKNOWNS + 1) * n + a] = mean[5];
-            }
-        }
-    }
-}
-
-/// u at the nodes, averaged as F and v are: of the stage by Runge-Kutta, u^n + dt/2 v by ADER, which is what the mean over the step is
-/// to second order; 0 where the displacement is not carried. Less what is not held ([`State::unheld`]).
-struct Place<'a, 'b>(&'a mut Block<'b>);
-
-impl Work for Place<'_, '_> {
-    type Out = ();
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let Self(block) = self;
-        let (n, stride, dt) = (block.scheme.operators.nodes(), block.rate.len(), block.stage.dt);
-        let nodes = &mut block.scratch.nodes;
-        let place = &mut nodes.place.as_chunks_mut::<2>().0[..n];
-        if !block.state.has_displacement() {
-            place.fill([F8::ZERO; 2]);
-            return;
-        }
-        let unheld = block.state.unheld.chunks_exact(2 * n).nth(block.block);
-        let own = UNKNOWNS * n..(UNKNOWNS + 2) * n;
-        let start = &block.state.u[stride * block.block..][own.clone()];
-        match &block.scheme.method {
-            Method::Ader { .. } => {
-                let half = L::splat(0.5 * dt);
-                for (a, (place, mean)) in place.iter_mut().zip(nodes.mean.as_chunks::<6>().0).enumerate() {
-                    for k in 0..2 {
-                        half.mul_add(L::load(&mean[4 + k]), L::load(&start[k * n + a])).store(&mut place[k]);
-                    }
-                }
-            }
-            Method::RungeKutta(tableau) => {
-                for (a, place) in place.iter_mut().enumerate() {
-                    *place = [start[a], start[n + a]];
-                }
-                let row = &tableau.a[block.stage.number];
-                for (stage, factor) in row.iter().enumerate().filter(|(_, factor)| **factor != 0.0) {
-                    let (rate, factor) = (&block.before[stage * stride..][own.clone()], L::splat(factor * dt));
-                    for (a, place) in place.iter_mut().enumerate() {
-                        for k in 0..2 {
-                            factor.mul_add(L::load(&rate[k * n + a]), L::load(&place[k])).store(&mut place[k]);
-                        }
-                    }
-                }
-            }
-        }
-        if let Some(unheld) = unheld {
-            for (a, place) in place.iter_mut().enumerate() {
-                for k in 0..2 {
-                    (L::load(&place[k]) - L::load(&unheld[k * n + a])).store(&mut place[k]);
-                }
-            }
-        }
-    }
-}
-
 /// Entries of a matrix beyond which the processor sees by itself what comes next; asking for them costs 5 % there.
-const SEEN: usize = 128;
+const SEEN_BY_ITSELF: usize = 128;
 
 /// Asks for one of the matrices of any cloud where each cell has its own, in the order in which they are wanted.
 #[inline(always)]
 fn ask_for<C: Coefficient>(matrices: &PointMatrices<C>, number: usize) {
     if let (true, PointMatrices::Dense { to_nodes, from_nodes, slope: [one, two] }) = (C::OWN, matrices) {
         let data = &[from_nodes, one, two, to_nodes][number].data;
-        if data.len() <= SEEN {
+        if data.len() <= SEEN_BY_ITSELF {
             prefetch(data);
         }
-    }
-}
-
-impl Block<'_> {
-    /// All of it.
-    pub fn run(mut self) {
-        let (kernel, operators) = (self.scheme.kernel, &self.scheme.operators);
-        let line = &operators.line;
-        let metric = &operators.geometry.blocks[self.block];
-        let mut clock = self.scratch.phases.clock();
-        match &operators.points {
-            None => self.stage(&mut clock),
-            Some(points) => kernel.run(Predict(&mut self, points, &mut clock)),
-        }
-        with_nodes!(line.m, M => kernel.run(volume::Volume::<'_, M> {
-            line,
-            metric,
-            arrays: &mut self.scratch.nodes,
-            rate: self.rate,
-        }));
-        if self.stage.number == 0 {
-            self.given.iter_mut().for_each(|given| **given = Given::default());
-            self.sums.iter_mut().for_each(|sums| **sums = Sums::default());
-        }
-        if !self.scheme.sources.is_empty() {
-            self.source_at_nodes();
-            let masses = &mut self.scratch.nodes.masses;
-            with_nodes!(line.m, M => { kernel.run(volume::Masses::<'_, M> { line, metric, masses }); });
-        }
-        if !self.scheme.sources.is_empty() || self.state.has_displacement() {
-            kernel.run(Extras(&mut self));
-        }
-        self.scratch.phases.book(Phase::Volume, &mut clock);
-        let (looks, metered) = (self.scheme.flux.looks(), self.sums.is_some());
-        let width = volume::width(looks, metered);
-        let placed = looks == Looks::Displacement;
-        if placed {
-            kernel.run(Place(&mut self));
-        }
-        let (arrays, traces) = (&self.scratch.nodes, &mut *self.traces);
-        with_nodes!(line.m, M => if metered {
-            kernel.run(volume::Traces::<'_, M, true> { line, metric, arrays, width, placed, traces });
-        } else {
-            kernel.run(volume::Traces::<'_, M, false> { line, metric, arrays, width, placed, traces });
-        });
-        let law = &self.scheme.laws[operators.blocks.material[self.block]];
-        // Later stages of RK are no states: what is wrong with them shows in the state that they make.
-        let worst = (self.stage.number == 0).then_some((&mut *self.worst, operators.blocks.count[self.block]));
-        if kernel.run(volume::Speeds { law, metric, width, looks, traces: self.traces, worst }) {
-            let count = operators.blocks.count[self.block];
-            self.worst.lost_at(FacePoint::find(self.block, count, self.traces, width));
-        }
-        self.scratch.phases.book(Phase::Traces, &mut clock);
-    }
-
-    /// Runge-Kutta: U = U^n + dt sum_j a_ij k_j, and the law at the nodes.
-    fn stage(&mut self, clock: &mut Clock) {
-        let (scheme, n, stride) = (self.scheme, self.scheme.operators.nodes(), self.rate.len());
-        let Method::RungeKutta(tableau) = &scheme.method else { return };
-        let nodes = &mut self.scratch.nodes;
-        // The law needs the six of U alone.
-        let start = &self.state.u[stride * self.block..][..UNKNOWNS * n];
-        let factors = tableau.a[self.stage.number].iter().map(|a| a * self.stage.dt);
-        let terms = Terms::new(factors, self.before, stride, UNKNOWNS * n);
-        let (start, term) = match terms.few() {
-            Some(term) => (start, term),
-            None => {
-                scheme.kernel.run(Sum(terms, start, &mut nodes.stage[..UNKNOWNS * n]));
-                (&nodes.stage[..UNKNOWNS * n], None)
-            }
-        };
-        let law = &scheme.laws[scheme.operators.blocks.material[self.block]];
-        let (mean, stress) = (&mut nodes.mean[..6 * n], &mut nodes.mean_stress[..4 * n]);
-        let internal = scheme.histories.of(&self.state.internal, self.block);
-        scheme.kernel.run(AtNodes { law, start, term, internal, mean, stress });
-        self.scratch.phases.book(Phase::Volume, clock);
-    }
-
-    #[inline(always)]
-    fn predict_with<L: Lanes, M: Material>(&mut self, law: &M, points: &Points, clock: &mut Clock) {
-        match points.pool.share[self.block] {
-            Share::Shared(k) => self.predict::<L, M, _>(law, points, [&points.pool.shared[k]; 2], clock),
-            Share::Own(k) => {
-                let later = match self.later.map(|later| points.pool.share[later]) {
-                    Some(Share::Own(later)) => later,
-                    _ => k,
-                };
-                let own = &points.pool.own;
-                self.predict::<L, M, _>(law, points, [&own[k], &own[later]], clock);
-            }
-        }
-    }
-
-    /// ADER: G2P (22), predictor (15)-(21), P2G of the averages (18). Of the matrices the second are those of a block that
-    /// comes later: where each block has its own, they are most of what memory brings, and are asked for piece by piece.
-    #[inline(always)]
-    fn predict<L: Lanes, M: Material, C: Coefficient>(
-        &mut self,
-        law: &M,
-        points: &Points,
-        [matrices, later]: [&PointMatrices<C>; 2],
-        clock: &mut Clock,
-    ) {
-        ask_for(later, 0);
-        let Method::Ader { time, sweeps } = &self.scheme.method else { return };
-        let (kernel, n, np) = (self.scheme.kernel, self.scheme.operators.nodes(), matrices.points());
-        let stride = self.rate.len();
-        let start = &self.state.u[stride * self.block..stride * (self.block + 1)];
-        let (nodes, arrays) = (&mut self.scratch.nodes.stage, &mut self.scratch.points);
-        let (fields, between, points_of) = (&start[..6 * n], &mut arrays.between, &mut arrays.start);
-        kernel.run(FieldsToPoints::<C, 6> { matrices, fields, nodes, between, points: points_of });
-        if !self.scheme.sources.is_empty() {
-            self.source_at_points(points, np);
-        }
-        self.scratch.phases.book(Phase::GridToPoints, clock);
-        ask_for(later, 1);
-        let (metric, weights, dt) = (points.metric_of(self.block), &time.weights[..], self.stage.dt);
-        let internal = self.scheme.histories.of(&self.state.internal, self.block);
-        let predictor = Predictor { law, matrices, metric, weights, sweeps, dt, internal, kernel };
-        predictor.run::<L>(&mut self.scratch.points);
-        self.scratch.phases.book(Phase::Predictor, clock);
-        ask_for(later, 2);
-        let (arrays, nodes) = (&mut self.scratch.points, &mut self.scratch.nodes);
-        let (points, between) = (&arrays.mean[..6 * np], &mut arrays.between);
-        kernel.run(ToNodes::<C, 6> { matrices, points, between, nodes: &mut nodes.mean });
-        ask_for(later, 3);
-        let (points, between) = (&arrays.mean_stress[..4 * np], &mut arrays.between);
-        kernel.run(ToNodes::<C, 4> { matrices, points, between, nodes: &mut nodes.mean_stress });
-        self.scratch.phases.book(Phase::PointsToGrid, clock);
-    }
-
-    /// b at the points and time nodes.
-    fn source_at_points(&mut self, points: &Points, np: usize) {
-        for lane in 0..LANES {
-            let corners = self.scheme.operators.geometry.corners_of(self.block, lane);
-            for p in 0..np {
-                let at = points.first[self.block] + p;
-                let x = map::position(&corners, [0, 1].map(|k| points.parent[2 * at + k].0[lane]));
-                for (s, node) in self.stage.times.iter().enumerate() {
-                    let b = self.acceleration(x, node.time, lane);
-                    for (k, b) in b.into_iter().enumerate() {
-                        self.scratch.points.source[2 * (s * np + p) + k].0[lane] = b;
-                    }
-                }
-            }
-        }
-    }
-
-    /// b at the nodes, averaged over the time nodes.
-    fn source_at_nodes(&mut self) {
-        let n = self.scheme.operators.nodes();
-        for lane in 0..LANES {
-            let corners = self.scheme.operators.geometry.corners_of(self.block, lane);
-            for a in 0..n {
-                let x = map::position(&corners, self.scheme.operators.line.basis.node_2d(a));
-                let mut mean = [0.0; 2];
-                for node in self.stage.times {
-                    let b = self.acceleration(x, node.time, lane);
-                    mean = [0, 1].map(|k| mean[k] + node.weight * b[k]);
-                }
-                (0..2).for_each(|k| self.scratch.nodes.source[k * n + a].0[lane] = mean[k]);
-            }
-        }
-    }
-
-    /// Sum of all sources; padding lanes stay at rest.
-    fn acceleration(&self, x: [f64; 2], time: f64, lane: usize) -> [f64; 2] {
-        let blocks = &self.scheme.operators.blocks;
-        if lane >= blocks.count[self.block] {
-            return [0.0; 2];
-        }
-        self.scheme.sources.iter().fold([0.0; 2], |sum, source| {
-            let b = source.acceleration(x, time, blocks.material[self.block]);
-            [sum[0] + b[0], sum[1] + b[1]]
-        })
     }
 }

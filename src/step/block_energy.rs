@@ -1,12 +1,13 @@
 //! The energy of the cells of a block: what the balance meters in a step, and the watch over the energy from time to time.
 
+use super::at_points::at_points;
 use super::history::recall;
-use super::survey::at_points;
 use super::volume::{Masses, with_nodes};
 use super::{Scheme, Scratch, Work as Memory, dense, with_scratch};
 use crate::lane::{F8, Lanes, Work};
 use crate::material::Material;
 use crate::state::State;
+use crate::tensor::DEFORMATION;
 use crate::with_law;
 use rayon::prelude::*;
 
@@ -79,7 +80,7 @@ fn is_elastic<M: Material>(law: &M) -> bool {
 fn at_nodes<L: Lanes, M: Material>(law: M, masses: &[F8], u: &[F8]) -> L {
     let mut sum = L::zero();
     for (a, mass) in masses.iter().enumerate() {
-        let f = dense::gather::<L, 4>(u, masses.len(), a);
+        let f = dense::gather::<L, DEFORMATION>(u, masses.len(), a);
         sum = L::load(mass).mul_add(law.energy(f, &[]), sum);
     }
     sum
@@ -89,7 +90,7 @@ fn at_nodes<L: Lanes, M: Material>(law: M, masses: &[F8], u: &[F8]) -> L {
 fn kinetic_energy<L: Lanes>(density: f64, masses: &[F8], u: &[F8]) -> L {
     let (n, mut sum) = (masses.len(), L::zero());
     for (a, mass) in masses.iter().enumerate() {
-        let (one, two) = (L::load(&u[4 * n + a]), L::load(&u[5 * n + a]));
+        let (one, two) = (L::load(&u[DEFORMATION * n + a]), L::load(&u[(DEFORMATION + 1) * n + a]));
         sum = L::load(mass).mul_add(one.mul_add(one, two * two), sum);
     }
     sum * L::splat(0.5 / density)

@@ -1,21 +1,13 @@
 //! The control of the curl of F in one block: what [`Relax`] takes of R = F - Pi F = C C^T W F.
 
-use super::curl_core::Cells;
+use super::curl_core::{Arrays, Cells};
 use super::volume::Masses;
 use crate::lane::{F8, Lane, Lanes, Work};
 use crate::material::{Law, Material, virgin};
 use crate::operators::curl_free::{Class, Halves, Relax};
 use crate::operators::{CurlFree, Matrix, Share};
-use crate::tensor::contract;
+use crate::tensor::{DEFORMATION, contract};
 use crate::with_law;
-
-/// Memory of the projection.
-pub struct Arrays<'a> {
-    /// W F, [row i][direction][node]; or what of F goes into the products of [`Halves`] and [`Cells`].
-    pub weighted: &'a mut [F8],
-    /// C^T W F, [row i][column]; or what comes out of those products.
-    pub coefficients: &'a mut [F8],
-}
 
 /// The control of the curl of F.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -122,8 +114,8 @@ impl Rotation<'_> {
     pub fn run<L: Lanes, const M: usize>(self, theta: [L; 2], masses: Masses<'_, M>, arrays: Arrays, u: &mut [F8]) {
         let n = M * M;
         let Self { curl_free, block, law, gradients } = self;
-        let gradients = &mut gradients[..4 * n];
-        gradients.copy_from_slice(&u[..4 * n]);
+        let gradients = &mut gradients[..DEFORMATION * n];
+        gradients.copy_from_slice(&u[..DEFORMATION * n]);
         let Masses { line, metric, masses } = masses;
         let find = Masses { line, metric, masses: &mut *masses };
         project::<L, M>(curl_free, block, L::splat(1.0), find, arrays, gradients);
@@ -134,11 +126,11 @@ impl Rotation<'_> {
             return;
         }
         let mass = Masses::<'_, M> { line, metric, masses }.run::<L>();
-        let (mut total, mut sum) = (L::zero(), [L::zero(); 4]);
+        let (mut total, mut sum) = (L::zero(), [L::zero(); DEFORMATION]);
         for a in 0..n {
-            let (m, d) = (L::load(&mass[a]), super::dense::gather::<L, 4>(gradients, n, a));
+            let (m, d) = (L::load(&mass[a]), super::dense::gather::<L, DEFORMATION>(gradients, n, a));
             total = total + m;
-            for k in 0..4 {
+            for k in 0..DEFORMATION {
                 sum[k] = m.mul_add(d[k], sum[k]);
             }
         }
@@ -150,7 +142,7 @@ impl Rotation<'_> {
             // 1 where energy falls, 0 where it rises or nothing is done.
             theta = theta * (-work / (work.max(-work) + L::splat(f64::MIN_POSITIVE))).max(L::zero());
         }
-        for (k, (d, f)) in gradients.chunks_exact(n).zip(u.chunks_exact_mut(n)).enumerate().take(4) {
+        for (k, (d, f)) in gradients.chunks_exact(n).zip(u.chunks_exact_mut(n)).enumerate().take(DEFORMATION) {
             for (d, f) in d.iter().zip(f) {
                 theta.mul_add(L::load(d) + mean[k], L::load(f)).store(f);
             }
@@ -162,7 +154,8 @@ impl Rotation<'_> {
 #[inline(always)]
 fn turn<L: Lanes>(theta: L, gradients: &mut [F8], u: &mut [F8], n: usize) {
     for a in 0..n {
-        let (f, pi) = (super::dense::gather::<L, 4>(u, n, a), super::dense::gather::<L, 4>(gradients, n, a));
+        let (f, pi) =
+            (super::dense::gather::<L, DEFORMATION>(u, n, a), super::dense::gather::<L, DEFORMATION>(gradients, n, a));
         let r = [f[0] - pi[0], f[1] - pi[1], f[2] - pi[2], f[3] - pi[3]];
         let (e, g) = ([-f[2], -f[3], f[0], f[1]], [f[3], -f[2], -f[1], f[0]]);
         let q = L::splat(1.0) / contract(f, f);
@@ -171,7 +164,7 @@ fn turn<L: Lanes>(theta: L, gradients: &mut [F8], u: &mut [F8], n: usize) {
         let half = L::splat(-0.5) * theta * turn;
         let share = L::splat(2.0) / half.mul_add(half, L::splat(1.0));
         let (sine, versine) = (half * share, -(half * half * share));
-        for k in 0..4 {
+        for k in 0..DEFORMATION {
             turn.mul_add(e[k], trace.mul_add(g[k], -r[k])).store(&mut gradients[k * n + a]);
             sine.mul_add(e[k], versine.mul_add(f[k], f[k])).store(&mut u[k * n + a]);
         }
@@ -183,9 +176,10 @@ fn turn<L: Lanes>(theta: L, gradients: &mut [F8], u: &mut [F8], n: usize) {
 fn power<L: Lanes, K: Material>(law: &K, [u, d, mass]: [&[F8]; 3], mean: [L; 4], n: usize) -> L {
     let mut sum = L::zero();
     for a in 0..n {
-        let p = law.stress(super::dense::gather::<L, 4>(u, n, a), &mut virgin::<L, K>(law)[..K::INTERNAL.len()]);
+        let p =
+            law.stress(super::dense::gather::<L, DEFORMATION>(u, n, a), &mut virgin::<L, K>(law)[..K::INTERNAL.len()]);
         let mut power = L::zero();
-        for k in 0..4 {
+        for k in 0..DEFORMATION {
             power = p[k].mul_add(L::load(&d[k * n + a]) + mean[k], power);
         }
         sum = L::load(&mass[a]).mul_add(power, sum);
@@ -239,7 +233,7 @@ fn with_halves<L: Lanes, const M: usize>(halves: &Halves, theta: L, arrays: Arra
     let n = M * M;
     let (evens, odds) = (n.div_ceil(2), n / 2);
     let (even, odd) = arrays.weighted.as_chunks_mut::<2>().0[..2 * n].split_at_mut(2 * evens);
-    let fields = &mut u[..4 * n];
+    let fields = &mut u[..DEFORMATION * n];
     for (k, f) in fields.chunks_exact(n).enumerate() {
         let (i, axis) = (k / 2, k % 2);
         for a in 0..odds {
@@ -320,7 +314,7 @@ fn with_matrix<L: Lanes, const M: usize>(
     let (rows, columns, n) = (matrix.rows, matrix.columns, M * M);
     let mass = masses.run::<L>();
     let Arrays { weighted, coefficients } = arrays;
-    for (weighted, u) in weighted.chunks_exact_mut(n).zip(u.chunks_exact(n)).take(4) {
+    for (weighted, u) in weighted.chunks_exact_mut(n).zip(u.chunks_exact(n)).take(DEFORMATION) {
         for a in 0..n {
             (L::load(&mass[a]) * L::load(&u[a])).store(&mut weighted[a]);
         }
@@ -407,74 +401,4 @@ fn subtract<L: Lanes, const K: usize>(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::lane::Kernel;
-    use crate::mesh::{Mesh, links, rectangle};
-    use crate::operators::{Needs, Operators};
-    use crate::step::volume::{self, with_nodes};
-
-    struct Project<'a, const M: usize>(&'a Operators, &'a mut [F8]);
-
-    impl<const M: usize> Work for Project<'_, M> {
-        type Out = ();
-        #[inline(always)]
-        fn run<L: Lanes>(self) {
-            let Self(operators, u) = self;
-            let mut nodes = volume::Arrays::new(M, 6);
-            let (line, metric) = (&operators.line, &operators.geometry.blocks[0]);
-            let masses = Masses::<'_, M> { line, metric, masses: &mut nodes.masses };
-            let arrays = Arrays { weighted: &mut nodes.weighted, coefficients: &mut nodes.coefficients };
-            project::<L, M>(operators.curl_free.as_ref().unwrap(), 0, L::splat(1.0), masses, arrays, u);
-        }
-    }
-
-    /// 4 x 2 cells, whose nodes are moved.
-    fn mesh(place: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
-        let mut mesh = rectangle([4.0, 2.0], [4, 2]).unwrap();
-        mesh.nodes.iter_mut().for_each(|x| *x = place(*x));
-        mesh
-    }
-
-    #[test]
-    fn on_all_cells_it_is_the_projection_of_a_single_one() {
-        let sheared = mesh(|x| [x[0] + 0.3 * x[1], 0.7 * x[1]]);
-        // Congruent, but not the same after half a turn.
-        let trapezoids = mesh(|x| [x[0], x[1] + if x[1] == 1.0 { 0.1 * (1.0 - 2.0 * (x[0] % 2.0)) } else { 0.0 }]);
-        let different = mesh(|x| [x[0] + 0.1 * (5.0 * x[1]).sin(), x[1] + 0.1 * (3.0 * x[0]).cos()]);
-        for (mesh, by_halves) in [(sheared, true), (trapezoids, false), (different, false)] {
-            for degree in 1..=6 {
-                let needs = Needs { degree, sampling: None, curl_free: true };
-                let operators = Operators::build(&mesh, &links(&mesh).unwrap(), &[0; 8], &needs).unwrap();
-                let (curl_free, n) = (operators.curl_free.as_ref().unwrap(), operators.nodes());
-                let halves = |class: &Class| matches!(class, Class::Halves(_));
-                assert_eq!(curl_free.pool.shared.iter().any(halves), by_halves);
-                let u: Vec<F8> =
-                    (0..4 * n).map(|k| F8(std::array::from_fn(|l| ((7 * k + 3 * l) as f64).sin()))).collect();
-                for kernel in Kernel::NAMES.iter().map(|(_, kernel)| *kernel) {
-                    let mut out = u.clone();
-                    with_nodes!(operators.line.m, M => kernel.run(Project::<'_, M>(&operators, &mut out)));
-                    for lane in 0..8 {
-                        let mut f: Vec<f64> = u.iter().map(|u| u.0[lane]).collect();
-                        curl_free.project(&operators.line, &operators.geometry, [0, lane], &mut f);
-                        for (f, out) in f.iter().zip(&out) {
-                            // Sums of up to 98 numbers of order one.
-                            assert!((f - out.0[lane]).abs() < 1e-13, "S{degree} {kernel:?}: {f} {out:?}");
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn relaxation_is_one_minus_exp_to_rounding_on_its_whole_range() {
-        for i in 0..100_000 {
-            let x = 10f64.powf(-12.0 + 15.0 * i as f64 / 1e5);
-            let relative = (relaxation(x) / -(-x).exp_m1() - 1.0).abs();
-            // Roundings of r, of q and of the sum, which may be a third of its terms.
-            assert!(relative < 2e-15, "x = {x}: {relative:e}");
-        }
-        assert_eq!(relaxation(0.0), 0.0);
-    }
-}
+mod tests;

@@ -1,10 +1,17 @@
 //! Pi of eight cells that differ, by [`Curl`]: F <- F - theta W^-1 J K^T Z K J^T F.
 
-use super::curl::Arrays;
 use super::volume::{cofactors, row, square};
 use crate::lane::{F8, Lanes};
 use crate::operators::curl_core::{Curl, functionals, numbers};
 use crate::operators::{Line, Metric, determinant};
+
+/// Memory of the projection.
+pub struct Arrays<'a> {
+    /// W F, [row i][direction][node]; or what of F goes into the products of [`crate::operators::curl_free::Halves`] and [`Cells`].
+    pub weighted: &'a mut [F8],
+    /// C^T W F, [row i][column]; or what comes out of those products.
+    pub coefficients: &'a mut [F8],
+}
 
 /// A block.
 #[derive(Clone, Copy)]

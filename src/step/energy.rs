@@ -7,7 +7,7 @@ use crate::lane::{Coefficient, F8};
 use crate::mesh::map;
 use crate::operators::{PointMatrices, Share, determinant};
 use crate::state::{State, UNKNOWNS};
-use crate::tensor;
+use crate::tensor::{self, DEFORMATION};
 use rayon::prelude::*;
 
 /// Totals per unit thickness.
@@ -25,7 +25,7 @@ pub struct Totals {
     /// displacement is known.
     pub angular_momentum: Option<f64>,
     /// int F dX, m^2.
-    pub deformation: [f64; 4],
+    pub deformation: [f64; DEFORMATION],
     /// min J over the nodes.
     pub min_j: f64,
     /// Largest |dF_i2/dX_1 - dF_i1/dX_2| at the nodes, 1/m.
@@ -69,7 +69,7 @@ impl Totals {
         plastic: None,
         momentum: [0.0; 2],
         angular_momentum: None,
-        deformation: [0.0; 4],
+        deformation: [0.0; DEFORMATION],
         min_j: f64::INFINITY,
         max_curl: 0.0,
         max_drift: None,
@@ -136,7 +136,7 @@ impl Scheme {
         let mut sum = Totals::empty(state);
         let (mut drift, mut area) = (0.0, 0.0);
         for (a, mass) in self.operators.geometry.masses(&self.operators.line, block, lane).enumerate() {
-            let [f11, f12, f21, f22, p1, p2]: [f64; 6] = std::array::from_fn(|k| u[k * n + a].0[lane]);
+            let [f11, f12, f21, f22, p1, p2]: [f64; UNKNOWNS] = std::array::from_fn(|k| u[k * n + a].0[lane]);
             let f = [f11, f12, f21, f22];
             sum.add(&Totals {
                 kinetic: mass * (p1 * p1 + p2 * p2) / (2.0 * law.density()),
@@ -151,7 +151,8 @@ impl Scheme {
             });
             area += mass;
             if state.has_displacement() {
-                let [one, two] = [6, 7].map(|component| self.gradient(u, block, lane, a, component));
+                let [one, two] =
+                    [0, 1].map(|axis| UNKNOWNS + axis).map(|component| self.gradient(u, block, lane, a, component));
                 drift += mass
                     * [one[0] - f11 + 1.0, one[1] - f12, two[0] - f21, two[1] - f22 + 1.0]
                         .map(|d| d * d)
@@ -167,11 +168,11 @@ impl Scheme {
     fn deformation_at_points(&self, state: &State, block: usize) -> Vec<F8> {
         let count = self.histories.weights(block).len();
         let (n, m) = (self.operators.nodes(), self.operators.line.m);
-        let u = &state.u[block * state.components * n..][..4 * n];
-        let mut points = vec![F8::ZERO; 4 * count];
+        let u = &state.u[block * state.components * n..][..DEFORMATION * n];
+        let mut points = vec![F8::ZERO; DEFORMATION * count];
         match self.operators.points.as_ref().map(|points| (&points.pool, points.pool.share[block])) {
             _ if count == 0 => {}
-            None => super::dense::interleave::<4>(u, n, &mut points),
+            None => super::dense::interleave::<DEFORMATION>(u, n, &mut points),
             Some((pool, Share::Shared(k))) => self.to_points(&pool.shared[k], u, m, &mut points),
             Some((pool, Share::Own(k))) => self.to_points(&pool.own[k], u, m, &mut points),
         }
@@ -179,9 +180,9 @@ impl Scheme {
     }
 
     fn to_points<C: Coefficient>(&self, matrices: &PointMatrices<C>, fields: &[F8], m: usize, points: &mut [F8]) {
-        let (mut nodes, mut between) = (fields.to_vec(), vec![F8::ZERO; factors(m, matrices.points(), 4)]);
+        let (mut nodes, mut between) = (fields.to_vec(), vec![F8::ZERO; factors(m, matrices.points(), DEFORMATION)]);
         let (nodes, between) = (&mut nodes[..], &mut between[..]);
-        self.kernel.run(FieldsToPoints::<C, 4> { matrices, fields, nodes, between, points });
+        self.kernel.run(FieldsToPoints::<C, DEFORMATION> { matrices, fields, nodes, between, points });
     }
 
     /// What a law with memory stores and has dissipated in a lane, from F at the points. A point is where the last step has
@@ -189,7 +190,7 @@ impl Scheme {
     fn stored_at_points(&self, state: &State, block: usize, lane: usize, points: &[F8]) -> Totals {
         let law = &self.laws[self.operators.blocks.material[block]];
         let mut sum = Totals::empty(state);
-        let at_points = points.as_chunks::<4>().0.iter().zip(self.histories.weights(block));
+        let at_points = points.as_chunks::<DEFORMATION>().0.iter().zip(self.histories.weights(block));
         for (p, (f, weight)) in at_points.enumerate() {
             let response = law.response(f.map(|f| f.0[lane]), &self.internal_at(state, block, lane, p));
             sum.strain += weight.0[lane] * response.energy;

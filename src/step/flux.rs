@@ -1,16 +1,18 @@
 //! Fluxes (3) of the four faces of a block, lifted: len (Flux* - own flux of the F rows).
 
 use super::across::{Aligned, Apart, Beyond, Joined, LaneByLane, Other, Traces};
-use super::balance::{FacePower, Sums, boundary_loss, boundary_power};
-use super::outside::Given;
+use super::balance::{BlockBalance, FacePower, boundary_loss, boundary_power};
+use super::block::Block;
+use super::outside::ExternalWork;
 use super::volume::{Arrays, width};
-use super::{Scheme, Stage};
 use crate::boundary::FacePoint;
 use crate::lane::{F8, LANES, Lane, Lanes, Work, load_array, store_array};
 use crate::material::Law;
-use crate::mesh::map;
+use crate::mesh::{FACES, map};
 use crate::operators::{Metric, Neighbour, Side};
 use crate::riemann::{Flux, Looks, Medium, Riemann, Trace, hold, interface};
+use crate::state::UNKNOWNS;
+use crate::tensor::DEFORMATION;
 use crate::with_flux;
 
 /// Runs `$body` with `$riemann` bound to the flux and `$numbers` to the constant numbers of a trace, see [`width`].
@@ -62,7 +64,7 @@ fn turn<L: Lanes, O: Other, const W: usize>(own: &[[F8; W]], other: &O, span: f6
     let Some(last) = own.len().checked_sub(1).filter(|last| *last > 0) else { return L::zero() };
     let (first, beyond, beyond_last) = (&own[0], other.load::<L, W>(0), other.load::<L, W>(last));
     let mut square = L::zero();
-    for k in 4..6 {
+    for k in DEFORMATION..UNKNOWNS {
         let change = (L::load(&own[last][k]) - L::load(&first[k])) + (beyond_last[k] - beyond[k]);
         square = change.mul_add(change, square);
     }
@@ -83,7 +85,7 @@ struct Faces<'a> {
     /// Own traces, [face][point][width].
     own: &'a [F8],
     /// The other side's, by face, with its own normal.
-    other: &'a [Beyond<'a>; 4],
+    other: &'a [Beyond<'a>; FACES],
     metric: &'a Metric<F8>,
     /// Points of a face.
     points: usize,
@@ -101,7 +103,7 @@ impl Work for Faces<'_> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
         with_width!(self.flux, self.metered, riemann, W => {
-            for face in 0..4 {
+            for face in 0..FACES {
                 // One loop for each way in which the traces lie: none looks at it point by point.
                 match self.other[face] {
                     Beyond::Aligned(other) => self.of_face::<L, _, _, W>(face, other, riemann),
@@ -127,7 +129,7 @@ impl Faces<'_> {
         }
         let metric = self.metric.load::<L>();
         let (normal, length) = (metric.normal(face), metric.length(face));
-        let lift = &mut self.lift.as_chunks_mut::<6>().0[m * face..m * (face + 1)];
+        let lift = &mut self.lift.as_chunks_mut::<UNKNOWNS>().0[m * face..m * (face + 1)];
         for point in 0..m {
             let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[point]));
             let there = turned::<L, R, W>(other.load::<L, W>(point));
@@ -141,14 +143,6 @@ impl Faces<'_> {
     }
 }
 
-/// A block in a stage: all that the flux of a face needs to know beside the traces.
-#[derive(Clone, Copy)]
-pub(super) struct Place<'a> {
-    pub scheme: &'a Scheme,
-    pub stage: &'a Stage<'a>,
-    pub block: usize,
-}
-
 /// The traces of a face of a block, [point][width].
 #[derive(Clone, Copy)]
 struct Sides<'a> {
@@ -158,39 +152,39 @@ struct Sides<'a> {
     other: &'a Beyond<'a>,
 }
 
-/// Where the energy that passes the faces of a block is booked.
-pub(super) struct Books<'a> {
-    /// The work of the boundary; none where the block has none.
-    pub given: Option<&'a mut Given>,
+/// Where the energy that passes the faces of a block goes.
+pub(super) struct Meter<'a> {
+    /// The work on the block; none where nothing outside touches it.
+    pub external: Option<&'a mut ExternalWork>,
     /// The balance; none where it is off.
-    pub sums: Option<&'a mut Sums>,
+    pub balance: Option<&'a mut BlockBalance>,
 }
 
 /// What a face between cells adds to the balance of the block. The fluxes are found once more: without the balance they never come to
 /// memory.
-struct Meter<'a, 'b> {
-    place: Place<'a>,
+struct FaceBalance<'a, 'b> {
+    block: Block<'a>,
     sides: Sides<'a>,
-    sums: &'b mut Sums,
+    balance: &'b mut BlockBalance,
 }
 
-impl Work for Meter<'_, '_> {
+impl Work for FaceBalance<'_, '_> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        with_width!(self.place.scheme.flux, true, riemann, W => self.with::<L, _, W>(riemann));
+        with_width!(self.block.scheme.flux, true, riemann, W => self.with::<L, _, W>(riemann));
     }
 }
 
-impl Meter<'_, '_> {
+impl FaceBalance<'_, '_> {
     #[inline(always)]
     fn with<L: Lanes, R: Riemann, const W: usize>(self, riemann: &R) {
-        let Self { place, sides, sums } = self;
-        let (scheme, metric, face) = (place.scheme, place.metric().load::<L>(), sides.face);
-        let neighbours = &scheme.operators.blocks.neighbours[place.block][face];
-        let factor = place.stage.dt * scheme.weight(place.stage.number);
+        let Self { block, sides, balance } = self;
+        let (scheme, metric, face) = (block.scheme, block.metric().load::<L>(), sides.face);
+        let neighbours = &scheme.operators.blocks.neighbours[block.number][face];
+        let factor = block.factor();
         let normal = metric.normal(face);
-        let mut medium = place.medium().splat::<L>();
+        let mut medium = block.medium().splat::<L>();
         if R::LOOKS == Looks::Displacement {
             medium.turn = turn::<L, _, W>(sides.own.as_chunks::<W>().0, sides.other, scheme.span());
         }
@@ -199,7 +193,7 @@ impl Meter<'_, '_> {
             let beyond = turned::<L, R, W>(sides.other.load::<L, W>(point));
             let minus = trace_of::<L, R, W>(&load_array::<L, W>(own));
             let plus = trace_of::<L, R, W>(&beyond);
-            let (mut flux, mut there, mut scale) = ([F8::ZERO; 6], [F8::ZERO; W], F8::ZERO);
+            let (mut flux, mut there, mut scale) = ([F8::ZERO; UNKNOWNS], [F8::ZERO; W], F8::ZERO);
             store_array(riemann.flux(&minus, &plus, normal, &medium), &mut flux);
             store_array(beyond, &mut there);
             (metric.length(face) * L::splat(*weight * factor)).store(&mut scale);
@@ -211,106 +205,78 @@ impl Meter<'_, '_> {
                         flux.iter_mut().for_each(|flux| flux.0[lane] = 0.0);
                     }
                     Neighbour::Interface(..) => {
-                        let special = place.special(face, point, lane, own, sides.other);
-                        special.iter().for_each(|special| (0..6).for_each(|k| flux[k].0[lane] = special[k]));
+                        let between = block.flux_of_lane(face, point, lane, own, sides.other);
+                        between.iter().for_each(|f| (0..UNKNOWNS).for_each(|k| flux[k].0[lane] = f[k]));
                     }
                     Neighbour::Cell(_) | Neighbour::Padding => {}
                 }
             }
             let power = FacePower { minus: own, plus: &there, flux: &flux };
-            power.jumps::<L, W>(&scale, normal, &mut sums.flux);
+            power.jumps::<L, W>(&scale, normal, &mut balance.flux);
         }
     }
 }
 
-/// Lifted numbers of all faces of a block into `nodes.lift`; the energy that they pass into `books`.
-pub(super) fn lift(place: Place, traces: &Traces, nodes: &mut Arrays, mut books: Books) {
-    let Place { scheme, block, .. } = place;
-    let (blocks, m) = (&scheme.operators.blocks, scheme.operators.line.m);
-    let (flux, metered) = (scheme.flux, books.sums.is_some());
-    let width = width(flux.looks(), metered);
-    let length = m * width;
-    let plan = &blocks.plan[block];
-    let mut other = [Beyond::Aligned(Aligned(&[])); 4];
-    for (other, plan) in other.iter_mut().zip(plan) {
-        *other = match plan.side {
-            Side::Aligned(there) => Beyond::Aligned(Aligned(traces.faces(there, 1, length))),
-            Side::Joined { first, second, by } => Beyond::Joined(Joined {
-                first: traces.around(first, length),
-                second: traces.around(second, length),
-                by,
-            }),
-            Side::Gathered(entry) => Beyond::Apart(Apart { traces, from: &blocks.gathered[entry], points: m }),
-        };
-    }
-    let own = traces.faces(4 * block, 4, length);
-    let (metric, medium) = (place.metric(), place.medium());
-    scheme.kernel.run(Faces {
-        flux,
-        metered,
-        own,
-        other: &other,
-        metric,
-        points: m,
-        span: scheme.span(),
-        medium,
-        lift: &mut nodes.lift,
-        held: &mut nodes.held,
-    });
-    for face in 0..4 {
-        let sides = Sides { face, own: &own[face * length..][..length], other: &other[face] };
-        if plan[face].special {
-            let held = &mut nodes.held[2 * m * face..2 * m * (face + 1)];
-            place.put_right(sides, &mut nodes.lift[6 * m * face..6 * m * (face + 1)], held, &mut books);
+impl Block<'_> {
+    /// Lifted numbers of all faces into `nodes.lift`; the energy that they pass into `meter`.
+    pub fn lifted_fluxes(&self, traces: &Traces, nodes: &mut Arrays, mut meter: Meter) {
+        let scheme = self.scheme;
+        let (blocks, m) = (&scheme.operators.blocks, scheme.operators.line.m);
+        let (flux, metered) = (scheme.flux, meter.balance.is_some());
+        let length = m * width(flux.looks(), metered);
+        let plan = &blocks.plan[self.number];
+        let mut other = [Beyond::Aligned(Aligned(&[])); FACES];
+        for (other, plan) in other.iter_mut().zip(plan) {
+            *other = match plan.side {
+                Side::Aligned(there) => Beyond::Aligned(Aligned(traces.faces(there, 1, length))),
+                Side::Joined { first, second, by } => Beyond::Joined(Joined {
+                    first: traces.around(first, length),
+                    second: traces.around(second, length),
+                    by,
+                }),
+                Side::Gathered(entry) => Beyond::Apart(Apart { traces, from: &blocks.gathered[entry], points: m }),
+            };
         }
-        if let Some(sums) = &mut books.sums {
-            scheme.kernel.run(Meter { place, sides, sums });
+        let own = traces.faces(FACES * self.number, FACES, length);
+        let (metric, medium, span) = (self.metric(), self.medium(), scheme.span());
+        let (lift, held) = (&mut nodes.lift[..], &mut nodes.held[..]);
+        scheme.kernel.run(Faces { flux, metered, own, other: &other, metric, points: m, span, medium, lift, held });
+        for face in 0..FACES {
+            let sides = Sides { face, own: &own[face * length..][..length], other: &other[face] };
+            if plan[face].has_boundary_or_interface {
+                let held = &mut nodes.held[2 * m * face..2 * m * (face + 1)];
+                let lift = &mut nodes.lift[UNKNOWNS * m * face..UNKNOWNS * m * (face + 1)];
+                self.boundary_and_interface_lanes(sides, lift, held, &mut meter);
+            }
+            if let Some(balance) = &mut meter.balance {
+                scheme.kernel.run(FaceBalance { block: *self, sides, balance });
+            }
         }
-    }
-}
-
-impl<'a> Place<'a> {
-    /// Its metric terms.
-    #[inline]
-    pub fn metric(&self) -> &'a Metric<F8> {
-        &self.scheme.operators.geometry.blocks[self.block]
-    }
-
-    /// Its law.
-    #[inline]
-    pub fn law(&self) -> &'a Law {
-        &self.scheme.laws[self.scheme.operators.blocks.material[self.block]]
-    }
-
-    /// What its cells are made of.
-    #[inline]
-    fn medium(&self) -> Medium<f64> {
-        Medium::new(self.law(), self.scheme.operators.degree)
     }
 
     /// The lifted numbers of lanes at a boundary or at another material, in `lift`, [point][6]; what passes the boundary into
-    /// `books`.
-    fn put_right(&self, sides: Sides, lift: &mut [F8], held: &mut [F8], books: &mut Books) {
+    /// `meter`.
+    fn boundary_and_interface_lanes(&self, sides: Sides, lift: &mut [F8], held: &mut [F8], meter: &mut Meter) {
         let line = &self.scheme.operators.line;
         let (face, width) = (sides.face, sides.own.len() / line.m);
-        let factor = self.stage.dt * self.scheme.weight(self.stage.number);
-        for (point, (own, lift)) in sides.own.chunks_exact(width).zip(lift.as_chunks_mut::<6>().0).enumerate() {
+        let factor = self.factor();
+        for (point, (own, lift)) in sides.own.chunks_exact(width).zip(lift.as_chunks_mut::<UNKNOWNS>().0).enumerate() {
             for lane in 0..LANES {
-                let Some(flux) = self.special(face, point, lane, own, sides.other) else { continue };
+                let Some(flux) = self.flux_of_lane(face, point, lane, own, sides.other) else { continue };
                 let between = self.held_between(face, point, lane, own, sides.other);
                 (0..2).for_each(|k| held[2 * point + k].0[lane] = between[k]);
                 let metric = self.metric().lane(lane);
                 let (normal, length) = (metric.normal(face), metric.length(face));
                 for (k, flux) in flux.iter().enumerate() {
-                    let own = if k < 4 { own[4 + k / 2].0[lane] * normal[k % 2] } else { 0.0 };
+                    let own = if k < DEFORMATION { own[DEFORMATION + k / 2].0[lane] * normal[k % 2] } else { 0.0 };
                     lift[k].0[lane] = (flux + own) * length;
                 }
-                let neighbour = &self.scheme.operators.blocks.neighbours[self.block][face][lane];
-                if let (Some(given), Neighbour::Boundary(_)) = (&mut books.given, neighbour) {
+                let neighbour = &self.scheme.operators.blocks.neighbours[self.number][face][lane];
+                if let (Some(external), Neighbour::Boundary(_)) = (&mut meter.external, neighbour) {
                     let weight = line.basis.weights[point] * length * factor;
-                    given.boundary.0[lane] += weight * boundary_power(&flux, normal);
-                    if let Some(sums) = &mut books.sums {
-                        sums.boundary.0[lane] += weight * boundary_loss(own, &flux, normal, lane);
+                    external.boundary.0[lane] += weight * boundary_power(&flux, normal);
+                    if let Some(balance) = &mut meter.balance {
+                        balance.boundary.0[lane] += weight * boundary_loss(own, &flux, normal, lane);
                     }
                 }
             }
@@ -319,8 +285,15 @@ impl<'a> Place<'a> {
 
     /// The flux of a lane at a boundary or at another material, from the `own` numbers at a point and the traces of the other
     /// side, each with its own normal; none elsewhere.
-    fn special(&self, face: usize, point: usize, lane: usize, own: &[F8], other: &Beyond) -> Option<[f64; 6]> {
-        let neighbour = &self.scheme.operators.blocks.neighbours[self.block][face][lane];
+    fn flux_of_lane(
+        &self,
+        face: usize,
+        point: usize,
+        lane: usize,
+        own: &[F8],
+        other: &Beyond,
+    ) -> Option<[f64; UNKNOWNS]> {
+        let neighbour = &self.scheme.operators.blocks.neighbours[self.number][face][lane];
         if matches!(neighbour, Neighbour::Cell(_) | Neighbour::Padding) {
             return None;
         }
@@ -345,7 +318,7 @@ impl<'a> Place<'a> {
 
     /// What is held in a lane at a boundary, nothing, or between two laws.
     fn held_between(&self, face: usize, point: usize, lane: usize, own: &[F8], other: &Beyond) -> [f64; 2] {
-        let neighbour = &self.scheme.operators.blocks.neighbours[self.block][face][lane];
+        let neighbour = &self.scheme.operators.blocks.neighbours[self.number][face][lane];
         match (self.scheme.flux.looks(), neighbour) {
             (Looks::Displacement, Neighbour::Interface(_, material)) => {
                 let there: [f64; 11] = std::array::from_fn(|k| other.number(point, k, own.len(), lane));
@@ -361,8 +334,8 @@ impl<'a> Place<'a> {
         let along = self.scheme.operators.line.basis.nodes[point];
         let end = (face % 2) as f64;
         let xi = if face < 2 { [end, along] } else { [along, end] };
-        let x = map::position(&geometry.corners_of(self.block, lane), xi);
-        let normal = geometry.blocks[self.block].lane(lane).normal(face);
+        let x = map::position(&geometry.corners_of(self.number, lane), xi);
+        let normal = geometry.blocks[self.number].lane(lane).normal(face);
         FacePoint { x, normal, medium: self.medium() }
     }
 }

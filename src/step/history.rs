@@ -5,7 +5,6 @@
 //! the start of the step, without storing what comes out; the step ends with h_(n+1) = law(F_p^(n+1), h_n).
 
 use super::Scheme;
-use super::survey::Strided;
 use crate::cloud::Cloud;
 use crate::lane::{F8, LANES, Lanes};
 use crate::material::{Internal, Law, MOST_INTERNAL, Material};
@@ -113,22 +112,6 @@ pub fn recall<L: Lanes, M: Material>(_: &M, block: &[F8], point: usize) -> Inter
         *out = L::load(stored);
     }
     out
-}
-
-/// h_(n+1) = law(F, h_n) at all points.
-#[inline(always)]
-pub(super) fn remember<L: Lanes, M: Material>(law: M, points: &Strided, before: &[F8], after: &mut [F8]) {
-    let variables = M::INTERNAL.len();
-    if variables == 0 {
-        return;
-    }
-    for (p, after) in after.chunks_exact_mut(variables).enumerate() {
-        let mut internal = recall::<L, M>(&law, before, p);
-        law.stress(points.at::<L>(p), &mut internal[..variables]);
-        for (value, after) in internal.into_iter().zip(after) {
-            value.store(after);
-        }
-    }
 }
 
 impl Scheme {

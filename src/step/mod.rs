@@ -1,43 +1,58 @@
 //! One step of the method, as in section 5 of the paper.
 //!
-//! Per block of 8 cells: `begin` = G2P, predictor, time averages, volume term, traces; then, with the neighbours'
-//! traces, `finish` = flux, lift, update, control of the curl. [`Scheme`] is read-only, [`State`] is all that changes, [`Work`] carries
-//! nothing from step to step: threads, restart and regrid follow from that.
+//! Each block of 8 cells begins (`begin`): grid to points (22), predictor (15)-(21), points to grid (18), volume term (11)-(12),
+//! traces. With the traces of its neighbours it finishes (`finish`): flux (3), lift (14), update (13), control of the curl,
+//! internal variables, survey. `schedule` has the order of the blocks. [`Motion`] goes from step to step; [`Scheme`] is
+//! read-only, [`State`] is all that changes, [`Work`] carries nothing from step to step: threads, restart and regrid follow
+//! from that.
 
 mod across;
+mod at_points;
 mod balance;
 mod begin;
+mod block;
 mod block_energy;
 pub mod cfl;
+mod corrected_stages;
+mod correction;
 mod curl;
 mod curl_core;
 mod dense;
+mod displacement;
 mod energy;
 mod finish;
 mod flux;
 mod health;
 pub mod history;
+mod lift;
+mod loss;
+mod motion;
 mod outside;
 pub mod phase;
 mod predictor;
 mod runge_kutta;
 mod schedule;
+mod sources;
 mod stage;
 mod sums;
 mod survey;
 pub mod sweeps;
+mod tile_memory;
 mod tiles;
 mod volume;
+mod worst;
 
 pub use crate::operators::curl_free::Relax;
 pub use balance::Balance;
+pub use correction::{Corrected, Correction, Made};
 pub use curl::Control;
 pub use energy::{EnergyMade, Totals};
-pub use health::Site;
 pub use history::Histories;
+pub use loss::{Loss, LossKind, Site};
+pub use motion::Motion;
 pub use phase::{Phase, Phases};
 pub use runge_kutta::Tableau;
-pub use survey::{Loss, LossKind, Speeds, Survey};
+pub use survey::{Speeds, Survey};
 pub use sweeps::Sweeps;
 
 use crate::basis::TimeBasis;
@@ -48,6 +63,9 @@ use crate::operators::Operators;
 use crate::riemann::Flux;
 use crate::source::Source;
 use crate::state::State;
+use begin::Begin;
+use finish::Finish;
+use runge_kutta::MOST_STAGES;
 use std::sync::Mutex;
 
 /// How time is integrated.
@@ -82,6 +100,8 @@ pub struct Scheme {
     pub sources: Vec<Box<dyn Source>>,
     /// The control of the curl of F; none where it is off.
     pub curl: Option<Control>,
+    /// What changes the new state after each step, one after the other.
+    pub corrections: Vec<Box<dyn Correction>>,
     /// The instruction set.
     pub kernel: Kernel,
 }
@@ -93,11 +113,13 @@ pub struct Work {
     /// Its wave speeds, see [`Survey`].
     speed: Vec<survey::Speeds>,
     /// Rates and traces under way.
-    tiles: schedule::Tiles,
+    tiles: tile_memory::Tiles,
     /// The work that the outside did in the step.
     outside: outside::Outside,
     /// The balance of the step, by block; none where nobody asks for it.
-    balance: Option<Vec<balance::Sums>>,
+    balance: Option<Vec<balance::BlockBalance>>,
+    /// The memory of the corrections; none where there are none.
+    corrections: Option<Box<correction::Memory>>,
     /// One a thread.
     scratch: Vec<Mutex<Scratch>>,
     /// The clock of the phases.
@@ -128,9 +150,10 @@ impl Work {
         Self {
             next: state.clone(),
             speed: vec![survey::Speeds::default(); operators.blocks.len()],
-            tiles: schedule::Tiles::new(scheme, state.components * operators.nodes()),
+            tiles: tile_memory::Tiles::new(scheme, state.components * operators.nodes()),
             outside: outside::Outside::new(scheme),
             balance: None,
+            corrections: correction::Memory::new(scheme, state),
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
             rate: phase::Rate::start(),
         }
@@ -151,7 +174,8 @@ impl Work {
         let numbers = self.next.u.len() + self.next.internal.len() + 2 * self.speed.len() + self.tiles.numbers();
         numbers * size_of::<F8>()
             + self.outside.bytes()
-            + self.balance.as_ref().map_or(0, |sums| size_of_val(&sums[..]))
+            + self.balance.as_ref().map_or(0, |blocks| size_of_val(&blocks[..]))
+            + self.corrections.as_ref().map_or(0, |memory| memory.bytes())
     }
 }
 
@@ -162,6 +186,8 @@ pub(crate) struct Stage<'a> {
     pub number: usize,
     /// The time nodes over which data that depends on time is averaged.
     pub times: &'a [TimeNode],
+    /// Runge-Kutta: a_ij of this stage i, U = U^n + dt sum_j a_ij k_j; empty for ADER.
+    pub row: &'a [f64],
     /// Step, s.
     pub dt: f64,
 }
@@ -182,26 +208,41 @@ impl Method {
 }
 
 impl Scheme {
-    /// Advances `state` by `dt` into `work.next`. `survey` is that of `state`; [`Scheme::surveyed`] has that of the result.
-    pub fn step(&self, state: &State, dt: f64, survey: &Survey, work: &mut Work) {
+    /// Advances `state`, whose survey this is, by `dt` into `work.next`; [`Scheme::surveyed`] has the survey of the result.
+    /// [`Motion`] does both.
+    pub(crate) fn step(&self, state: &State, dt: f64, survey: &Survey, work: &mut Work) {
+        self.step_to(state, survey, dt, state.time + dt, work);
+    }
+
+    /// The same; the time of the result is `time`: t + dt, but for a rounding.
+    fn step_to(&self, state: &State, survey: &Survey, dt: f64, time: f64, work: &mut Work) {
+        let (begin, finish) = (|block: Begin| block.run(), |block: Finish| block.run());
         match &self.method {
-            Method::Ader { time, .. } => {
+            Method::Ader { time: basis, .. } => {
                 let node = |(tau, weight): (&f64, &f64)| TimeNode { time: state.time + tau * dt, weight: *weight };
                 // At most 7 nodes: on the stack, no allocation in a step.
                 let mut times = [TimeNode { time: 0.0, weight: 0.0 }; 8];
-                times.iter_mut().zip(time.tau.iter().zip(&time.weights)).for_each(|(t, n)| *t = node(n));
-                let times = &times[..time.len()];
-                self.run_stages(&[Stage { number: 0, times, dt }], state, survey, work);
+                times.iter_mut().zip(basis.tau.iter().zip(&basis.weights)).for_each(|(t, n)| *t = node(n));
+                let stage = Stage { number: 0, times: &times[..basis.len()], row: &[], dt };
+                self.on_all_blocks(&[stage], (state, survey), work, begin, finish);
             }
             Method::RungeKutta(tableau) => {
-                let mut times = [[TimeNode { time: 0.0, weight: 1.0 }]; tiles::STAGES];
+                let mut times = [[TimeNode { time: 0.0, weight: 1.0 }]; MOST_STAGES];
                 times.iter_mut().zip(&tableau.c).for_each(|(node, c)| node[0].time = state.time + c * dt);
-                let stages = tiles::stages(&times, dt);
-                self.run_stages(&stages[..tableau.stages()], state, survey, work);
+                // Where corrections act on stages, blocks begin with what they have made of the sum.
+                let summed = work.corrections.as_ref().is_some_and(|memory| memory.stage.is_some());
+                let rows = if summed { &[][..] } else { &tableau.a[..] };
+                let row = |number: usize| rows.get(number).map_or(&[][..], |row| &row[..]);
+                let stages: [Stage; MOST_STAGES] =
+                    std::array::from_fn(|number| Stage { number, times: &times[number], row: row(number), dt });
+                self.on_all_blocks(&stages[..tableau.stages()], (state, survey), work, begin, finish);
             }
         }
-        work.next.time = state.time + dt;
+        work.next.time = time;
         work.next.step = state.step + 1;
+        if !self.corrections.is_empty() {
+            self.correct(state, dt, work);
+        }
     }
 
     /// What the rate of a stage counts in U^(n+1) = U^n + dt sum_s b_s k_s; 1 for ADER.

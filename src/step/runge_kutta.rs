@@ -1,5 +1,8 @@
 //! Explicit Runge-Kutta tableaux: the time integration of RK-DGFEM.
 
+/// At most so many stages: they stand on the stack.
+pub(super) const MOST_STAGES: usize = 12;
+
 /// k_i = f(t + c_i dt, U + dt sum_j a_ij k_j), U^(n+1) = U^n + dt sum_i b_i k_i.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tableau {

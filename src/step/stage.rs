@@ -1,12 +1,57 @@
 //! The start of a Runge-Kutta stage: U = U^n + dt sum_j a_ij k_j at the nodes, and the law there.
 
+use super::block::Block;
 use super::history::recall;
+use super::sums::Terms;
+use super::volume;
 use crate::lane::{F8, Lanes, Work, store_array};
 use crate::material::{Law, Material};
+use crate::state::{State, UNKNOWNS};
+use crate::tensor::DEFORMATION;
 use crate::with_law;
 
+impl Block<'_> {
+    /// F, v and P of the stage at the nodes, from the state at t_n and dU/dt in earlier stages, [stage][component][node].
+    pub fn stage_at_nodes(&self, state: &State, before: &[F8], nodes: &mut volume::Arrays) {
+        let (n, kernel) = (self.scheme.operators.nodes(), self.scheme.kernel);
+        let stride = state.components * n;
+        // The law needs the six of U alone.
+        let start = &self.unknowns(state)[..UNKNOWNS * n];
+        let factors = self.stage.row.iter().map(|a| a * self.stage.dt);
+        let terms = Terms::new(factors, before, stride, UNKNOWNS * n);
+        let (start, term) = match terms.few() {
+            Some(term) => (start, term),
+            None => {
+                let out = &mut nodes.stage[..UNKNOWNS * n];
+                kernel.run(Sum { terms, start, out });
+                (&nodes.stage[..UNKNOWNS * n], None)
+            }
+        };
+        let (mean, stress) = (&mut nodes.mean[..UNKNOWNS * n], &mut nodes.mean_stress[..DEFORMATION * n]);
+        kernel.run(AtNodes { law: self.law(), start, term, internal: self.internal(state), mean, stress });
+    }
+}
+
+/// start + the terms of a sum over stages.
+pub(super) struct Sum<'a> {
+    /// The terms.
+    pub terms: Terms<'a>,
+    /// What they are added to.
+    pub start: &'a [F8],
+    /// The sum.
+    pub out: &'a mut [F8],
+}
+
+impl Work for Sum<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.terms.add_to::<L>(self.start, self.out);
+    }
+}
+
 /// A state at the nodes, and its Q.
-pub struct AtNodes<'a> {
+struct AtNodes<'a> {
     /// The law.
     pub law: &'a Law,
     /// U^n, [component][node].
@@ -40,18 +85,18 @@ impl AtNodes<'_> {
     /// With so many TERMS, 0 or 1.
     #[inline(always)]
     fn with<L: Lanes, M: Material, const TERMS: usize>(&mut self, law: M, factor: f64, rate: &[F8]) {
-        let (mean, stress) = (self.mean.as_chunks_mut::<6>().0, self.stress.as_chunks_mut::<4>().0);
+        let (mean, stress) = (self.mean.as_chunks_mut::<UNKNOWNS>().0, self.stress.as_chunks_mut::<DEFORMATION>().0);
         let n = stress.len();
         let mean = &mut mean[..n];
-        let (mut start, mut slope) = ([&[] as &[F8]; 6], [&[] as &[F8]; 6]);
-        for k in 0..6 {
+        let (mut start, mut slope) = ([&[] as &[F8]; UNKNOWNS], [&[] as &[F8]; UNKNOWNS]);
+        for k in 0..UNKNOWNS {
             start[k] = &self.start[k * n..][..n];
             slope[k] = if TERMS > 0 { &rate[k * n..][..n] } else { start[k] };
         }
         let (factor, inverse_density) = (L::splat(factor), L::splat(1.0 / law.density()));
         for a in 0..n {
-            let mut u = [L::zero(); 6];
-            for k in 0..6 {
+            let mut u = [L::zero(); UNKNOWNS];
+            for k in 0..UNKNOWNS {
                 u[k] = L::load(&start[k][a]);
                 if TERMS > 0 {
                     u[k] = factor.mul_add(L::load(&slope[k][a]), u[k]);

@@ -1,20 +1,20 @@
 //! Sums of Runge-Kutta stages, U + sum_j factor_j k_j, read from memory once.
 
-use super::tiles::STAGES;
+use super::runge_kutta::MOST_STAGES;
 use crate::lane::{F8, Lanes};
 
 /// The terms factor_j k_j of a block.
 #[derive(Clone, Copy)]
 pub struct Terms<'a> {
-    list: [(f64, &'a [F8]); STAGES],
+    list: [(f64, &'a [F8]); MOST_STAGES],
     count: usize,
 }
 
 impl<'a> Terms<'a> {
     /// Of those `factors` that are not zero, `rates` being those of the block, [stage][`stride` numbers], cut to `len`.
     pub fn new(factors: impl Iterator<Item = f64>, rates: &'a [F8], stride: usize, len: usize) -> Self {
-        let mut terms = Self { list: [(0.0, &[]); STAGES], count: 0 };
-        for (stage, factor) in factors.enumerate().filter(|(_, factor)| *factor != 0.0).take(STAGES) {
+        let mut terms = Self { list: [(0.0, &[]); MOST_STAGES], count: 0 };
+        for (stage, factor) in factors.enumerate().filter(|(_, factor)| *factor != 0.0).take(MOST_STAGES) {
             terms.list[terms.count] = (factor, &rates[stage * stride..][..len]);
             terms.count += 1;
         }
@@ -23,7 +23,7 @@ impl<'a> Terms<'a> {
 
     /// With one more.
     pub fn and(mut self, factor: f64, rate: &'a [F8]) -> Self {
-        if factor != 0.0 && self.count < STAGES {
+        if factor != 0.0 && self.count < MOST_STAGES {
             self.list[self.count] = (factor, rate);
             self.count += 1;
         }

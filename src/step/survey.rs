@@ -1,15 +1,17 @@
 //! The health of a state: current wave speeds (for dt and the control of the curl), min J, and where stability was lost.
 
-use super::health::{self, FacePoint, Site};
-use super::history::{recall, remember};
-use super::predictor::{self, transfer::FieldsToPoints};
-use super::volume::{self, with_nodes};
+use super::at_points::{PointValues, at_points, remember};
+use super::health;
+use super::history::recall;
+use super::loss::{FacePoint, Loss};
+use super::volume::with_nodes;
+use super::worst::{Found, Worst};
 use super::{Phase, Scheme, Scratch, Work as Memory, with_scratch};
-use crate::lane::{self, Coefficient, F8, LANES, Lane, Lanes, Twin, Work};
+use crate::lane::{self, F8, Lane, Lanes, Twin, Work};
 use crate::material::Material;
-use crate::operators::{PointMatrices, Share};
+use crate::mesh::FACES;
 use crate::state::State;
-use crate::tensor;
+use crate::tensor::{self, DEFORMATION};
 use crate::with_law;
 use rayon::prelude::*;
 
@@ -32,108 +34,6 @@ pub struct Speeds {
     /// s / (rho0 c_s), s = max(0, -tau_min, tau_mean - mu): how fast the prestress tau turns and strains what is no gradient. 0
     /// without stress and in moderate tension.
     pub prestress: F8,
-}
-
-/// How a state lost stability.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Loss {
-    /// The cell (index in the mesh).
-    pub cell: usize,
-    /// The place in the cell.
-    pub site: Site,
-    /// What was lost.
-    pub kind: LossKind,
-}
-
-/// Kinds of lost stability.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LossKind {
-    /// A number of the state is not finite.
-    NotFinite,
-    /// J <= 0: the material is turned inside out.
-    Inverted(f64),
-    /// The acoustic tensor has a negative eigenvalue.
-    NotHyperbolic,
-}
-
-impl std::fmt::Display for LossKind {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            LossKind::NotFinite => write!(f, "a number of the state is not finite"),
-            LossKind::Inverted(j) => write!(f, "J = {j:.3e} <= 0: the material is turned inside out"),
-            LossKind::NotHyperbolic => {
-                write!(f, "loss of hyperbolicity: the acoustic tensor has a negative eigenvalue")
-            }
-        }
-    }
-}
-
-/// The worst of some blocks. Minimum and maximum do not depend on the order: same bits for any number of threads.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Worst {
-    /// The first block that lost stability; `usize::MAX` where all are healthy.
-    sick: usize,
-    /// The first block that began the step with J <= 0 at a face.
-    face: Option<FacePoint>,
-    /// Largest speed of the cells in each lane.
-    fastest: F8,
-    /// Smallest J of the cells in each lane.
-    min_j: F8,
-}
-
-impl Worst {
-    /// That of no block.
-    pub const NONE: Self = Self { sick: usize::MAX, face: None, fastest: F8::ZERO, min_j: F8::splat(f64::INFINITY) };
-
-    /// With what was found in a block with so many real cells.
-    #[inline(always)]
-    fn see<L: Lanes>(&mut self, mut found: Found, block: usize, cells: usize) {
-        for lane in cells..LANES {
-            (found.speed.0[lane], found.min_j.0[lane], found.sick.0[lane]) = (0.0, f64::INFINITY, 0.0);
-        }
-        L::load(&self.fastest).max(L::load(&found.speed)).store(&mut self.fastest);
-        L::load(&self.min_j).min(L::load(&found.min_j)).store(&mut self.min_j);
-        let mut bits = 0;
-        for sick in &found.sick.0 {
-            bits |= sick.to_bits();
-        }
-        if bits != 0 {
-            self.sick = self.sick.min(block);
-        }
-    }
-
-    /// With the smallest J at the face points of a block with so many real cells; whether one is not above 0.
-    #[inline(always)]
-    pub fn see_faces<L: Lanes>(&mut self, smallest: L, cells: usize) -> bool {
-        let (mut j, mut sick, mut bits) = (F8::ZERO, F8::ZERO, 0);
-        smallest.store(&mut j);
-        for lane in cells..LANES {
-            j.0[lane] = f64::INFINITY;
-        }
-        L::load(&self.min_j).min(L::load(&j)).store(&mut self.min_j);
-        L::load(&j).where_positive(L::zero(), L::splat(1.0)).store(&mut sick);
-        for sick in &sick.0 {
-            bits |= sick.to_bits();
-        }
-        bits != 0
-    }
-
-    /// With a face point where J <= 0.
-    #[cold]
-    pub fn lost_at(&mut self, face: FacePoint) {
-        self.face = FacePoint::first(self.face, Some(face));
-    }
-
-    /// That of both.
-    pub fn and(mut self, other: Self) -> Self {
-        self.sick = self.sick.min(other.sick);
-        self.face = FacePoint::first(self.face, other.face);
-        for lane in 0..LANES {
-            self.fastest.0[lane] = self.fastest.0[lane].max(other.fastest.0[lane]);
-            self.min_j.0[lane] = self.min_j.0[lane].min(other.min_j.0[lane]);
-        }
-        self
-    }
 }
 
 impl Scheme {
@@ -161,16 +61,66 @@ impl Scheme {
     ///
     /// # Errors
     /// As [`Scheme::survey`].
-    pub fn surveyed(&self, memory: &mut Memory, out: &mut Survey) -> Result<(), Loss> {
+    pub(crate) fn surveyed(&self, memory: &mut Memory, out: &mut Survey) -> Result<(), Loss> {
         std::mem::swap(&mut out.speed, &mut memory.speed);
         memory.speed.resize(out.speed.len(), Speeds::default());
-        self.judge(memory.tiles.worst(), &memory.next, out)
+        let corrected = memory.corrections.as_ref().map_or(&[][..], |memory| &memory.worst);
+        let worst = corrected.iter().fold(memory.tiles.worst(), |worst, block| worst.and(*block));
+        self.judge(worst, &memory.next, out)
+    }
+
+    /// [`Scheme::survey`], and the health at face points: of a state that no step has made, or that none will look at.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn survey_all(&self, state: &State, memory: &Memory, out: &mut Survey) -> Result<(), Loss> {
+        self.survey(state, memory, out)?;
+        let blocks = (0..self.operators.blocks.len()).into_par_iter();
+        let faces = blocks.map(|block| self.smallest_j_at_faces(state, block));
+        let worst = faces.reduce_with(|a, b| if b.j < a.j || (b.j == a.j && b.block < a.block) { b } else { a });
+        match worst {
+            Some(face) if face.j <= 0.0 => Err(self.loss_at_face(&face)),
+            Some(face) => {
+                out.min_j = out.min_j.min(face.j);
+                Ok(())
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The smallest J at the face points of the real cells of a block.
+    fn smallest_j_at_faces(&self, state: &State, block: usize) -> FacePoint {
+        let lanes = 0..self.operators.blocks.count[block];
+        let none = FacePoint { block, lane: 0, at: [0; 2], j: f64::INFINITY };
+        lanes.map(|lane| self.faces_of_lane(state, block, lane)).fold(none, |a, b| if b.j < a.j { b } else { a })
+    }
+
+    /// The same of one lane.
+    fn faces_of_lane(&self, state: &State, block: usize, lane: usize) -> FacePoint {
+        let (line, n) = (&self.operators.line, self.operators.nodes());
+        let (m, u) = (line.m, &state.u[block * state.components * n..][..DEFORMATION * n]);
+        let mut worst = FacePoint { block, lane, at: [0; 2], j: f64::INFINITY };
+        for face in 0..FACES {
+            let ends = &line.ends[face % 2];
+            for point in 0..m {
+                let (first, stride) = if face < 2 { (point, m) } else { (point * m, 1) };
+                let component = |k: usize| -> f64 {
+                    ends.iter().enumerate().map(|(i, l)| l * u[k * n + first + stride * i].0[lane]).sum()
+                };
+                let j = tensor::det([0, 1, 2, 3].map(component));
+                // A NaN is for those who look at the nodes.
+                if j < worst.j {
+                    worst = FacePoint { at: [face, point], j, ..worst };
+                }
+            }
+        }
+        worst
     }
 
     fn judge(&self, worst: Worst, state: &State, out: &mut Survey) -> Result<(), Loss> {
         out.fastest = worst.fastest.0.iter().fold(0.0, |a, b| a.max(*b));
         out.min_j = worst.min_j.0.iter().fold(f64::INFINITY, |a, b| a.min(*b));
-        match (worst.face, worst.sick) {
+        match (worst.face, worst.lost) {
             // What the step began with comes before what it made of it.
             (Some(face), _) => Err(self.loss_at_face(&face)),
             (None, usize::MAX) => Ok(()),
@@ -205,14 +155,6 @@ pub(super) struct Examine<'a> {
     pub worst: &'a mut Worst,
 }
 
-/// What is found in a block.
-struct Found {
-    speed: F8,
-    min_j: F8,
-    /// 0 in the lanes of healthy cells.
-    sick: F8,
-}
-
 impl Work for Examine<'_> {
     type Out = ();
     #[inline(always)]
@@ -220,7 +162,7 @@ impl Work for Examine<'_> {
         let Self { scheme, block, u, history, scratch, speed, worst } = self;
         let mut clock = scratch.phases.clock();
         let law = &scheme.laws[scheme.operators.blocks.material[block]];
-        let (f, others) = u.split_at(4 * scheme.operators.nodes());
+        let (f, others) = u.split_at(DEFORMATION * scheme.operators.nodes());
         let at_nodes = match scheme.samples_at_nodes(block) {
             true => L::splat(f64::INFINITY),
             false => with_nodes!(scheme.operators.line.m, M => health::smallest_j::<L, M>(f)),
@@ -243,61 +185,6 @@ impl Work for Examine<'_> {
         worst.see::<L>(found, block, scheme.operators.blocks.count[block]);
         scratch.phases.book(Phase::Survey, &mut clock);
     }
-}
-
-/// F at `count` points: component k of point p at `point` p + `component` k.
-pub(super) struct Strided<'a> {
-    f: &'a [F8],
-    count: usize,
-    point: usize,
-    component: usize,
-}
-
-impl Strided<'_> {
-    /// F at a point.
-    #[inline(always)]
-    pub fn at<L: Lanes>(&self, p: usize) -> [L; 4] {
-        let mut f = [L::zero(); 4];
-        for (k, f) in f.iter_mut().enumerate() {
-            *f = L::load(&self.f[self.point * p + self.component * k]);
-        }
-        f
-    }
-}
-
-/// F of the unknowns of a block at its points; at its nodes, where there are none.
-#[inline(always)]
-pub(super) fn at_points<'a, L: Lanes>(
-    scheme: &Scheme,
-    u: &'a [F8],
-    block: usize,
-    nodes: &mut volume::Arrays,
-    arrays: &'a mut predictor::Arrays,
-) -> Strided<'a> {
-    let n = scheme.operators.nodes();
-    let Some(points) = &scheme.operators.points else {
-        return Strided { f: u, count: n, point: 1, component: n };
-    };
-    let (f, between) = (&mut arrays.start, &mut arrays.between);
-    let (fields, nodes) = (&u[..4 * n], &mut nodes.stage);
-    let count = match points.pool.share[block] {
-        Share::Shared(k) => to_points::<L, _>(&points.pool.shared[k], fields, nodes, between, f),
-        Share::Own(k) => to_points::<L, _>(&points.pool.own[k], fields, nodes, between, f),
-    };
-    Strided { f, count, point: 4, component: 1 }
-}
-
-/// F at the points; the number of points.
-#[inline(always)]
-fn to_points<L: Lanes, C: Coefficient>(
-    matrices: &PointMatrices<C>,
-    fields: &[F8],
-    nodes: &mut [F8],
-    between: &mut [F8],
-    points: &mut [F8],
-) -> usize {
-    FieldsToPoints::<C, 4> { matrices, fields, nodes, between, points }.run::<L>();
-    matrices.points()
 }
 
 /// Squares of the wave speeds and J of the points so far.
@@ -331,16 +218,16 @@ impl<L: Lane> Extremes<L> {
 /// s / (rho0 c_s) from the Kirchhoff stress tau = P F^T, see [`Speeds`]: at the mean F of the points for an elastic law, the
 /// mean over the points for one with memory. It only sets a rate, so that no weights are needed.
 #[inline(always)]
-fn prestress<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8]) -> L {
+fn prestress<L: Lanes, M: Material>(law: &M, points: &PointValues, internal: &[F8]) -> L {
     if !M::GEOMETRIC {
         return L::zero();
     }
     let share = L::splat(1.0 / points.count as f64);
-    let mut sum = [L::zero(); 4];
+    let mut sum = [L::zero(); DEFORMATION];
     for p in 0..points.count {
         let f = points.at::<L>(p);
         let part = if M::INTERNAL.is_empty() { f } else { kirchhoff(law, f, &mut recall::<L, M>(law, internal, p)) };
-        for k in 0..4 {
+        for k in 0..DEFORMATION {
             sum[k] = part[k].mul_add(share, sum[k]);
         }
     }
@@ -359,7 +246,7 @@ fn kirchhoff<L: Lane, M: Material>(law: &M, f: [L; 4], internal: &mut [L]) -> [L
 
 /// Looks at F at the points and at what else must be finite; `at_nodes` is the smallest J there.
 #[inline(always)]
-fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8], at_nodes: L, others: &[F8]) -> Found {
+fn examine<L: Lanes, M: Material>(law: &M, points: &PointValues, internal: &[F8], at_nodes: L, others: &[F8]) -> Found {
     // A copy: its constants stay in registers.
     let law = *law;
     // Two points at a time, where none brings numbers of its own.
@@ -386,11 +273,11 @@ fn examine<L: Lanes, M: Material>(law: &M, points: &Strided, internal: &[F8], at
     let fastest = twins.fastest.0.max(twins.fastest.1).max(seen.fastest);
     let slowest = twins.slowest.0.min(twins.slowest.1).min(seen.slowest);
     let min_j = twins.min_j.0.min(twins.min_j.1).min(seen.min_j).min(at_nodes);
-    let mut found = Found { speed: F8::ZERO, min_j: F8::ZERO, sick: F8::ZERO };
+    let mut found = Found { speed: F8::ZERO, min_j: F8::ZERO, lost: F8::ZERO };
     fastest.sqrt().store(&mut found.speed);
     min_j.store(&mut found.min_j);
     // The root of a negative square is NaN, too.
     let poison = (poison[0] + poison[1]) + (poison[2] + poison[3]) + L::zero() * slowest.sqrt();
-    (poison + min_j.where_positive(L::zero(), L::splat(1.0))).store(&mut found.sick);
+    (poison + min_j.where_positive(L::zero(), L::splat(1.0))).store(&mut found.lost);
     found
 }

@@ -72,6 +72,7 @@ pub(super) fn scheme(
         flux: Flux::Dual,
         boundaries: mesh.edge_groups.iter().map(|_| boundary()).collect(),
         sources: vec![],
+        corrections: vec![],
         curl: (degree > 0).then_some(Control { relax: Relax::Rotation, rate: alpha * degree as f64 }),
         kernel: Kernel::widest(),
     }
@@ -100,14 +101,12 @@ pub(super) fn unpacked(scheme: &Scheme, state: &State) -> Vec<f64> {
 
 /// Steps `state` in place at `courant` = dt c / h.
 pub(super) fn march(scheme: &Scheme, state: &mut State, steps: usize, courant: f64) {
-    let mut work = Work::new(scheme, state);
-    let mut survey = Survey::default();
+    let mut motion = Motion::new(scheme, std::mem::take(state)).unwrap();
     let h = scheme.operators.geometry.h().flat_map(|h| h.0).fold(f64::INFINITY, f64::min);
     for _ in 0..steps {
-        scheme.survey(state, &work, &mut survey).unwrap();
-        scheme.step(state, courant * h / survey.fastest, &survey, &mut work);
-        std::mem::swap(state, &mut work.next);
+        motion.advance(scheme, courant * h / motion.survey.fastest).unwrap();
     }
+    *state = motion.state;
 }
 
 pub(super) fn midpoints(mesh: &Mesh, degree: usize) -> Cloud {

@@ -3,12 +3,14 @@
 //! F rows in strong form (D v; `finish` adds the lifted jump of v), exact on uniform states; p rows in weak form. Both
 //! are exact integrals on bilinear cells, so the two forms agree there to rounding.
 
-use super::survey::Worst;
+use super::worst::Worst;
 use crate::lane::{F8, Lane, Lanes, Twin, Work, load_array, store_array, twins};
 use crate::material::{Law, Material};
+use crate::mesh::FACES;
 use crate::operators::{Line, Metric, determinant};
 use crate::riemann::{Looks, tangent};
-use crate::tensor;
+use crate::state::UNKNOWNS;
+use crate::tensor::{self, AXES, DEFORMATION};
 use crate::with_law;
 
 /// Runs `$body` with `$nodes` bound to the constant M = N + 1: loops over the nodes of a line are unrolled. One `match` a
@@ -57,7 +59,7 @@ pub struct Arrays {
     /// Sources b, averaged over time, [2][node].
     pub source: Vec<F8>,
     /// Averages of u, [node][2], where the flux looks at it.
-    pub place: Vec<F8>,
+    pub displacement: Vec<F8>,
     /// Lifted numbers: [face][face point][6].
     pub lift: Vec<F8>,
     /// Lifted by the traces of what is held: [face][face point][2].
@@ -77,16 +79,16 @@ impl Arrays {
         let n = m * m;
         Self {
             stage: zeros(components * n),
-            mean: zeros(6 * n),
-            mean_stress: zeros(4 * n),
-            contravariant: zeros(4 * n),
-            source: zeros(2 * n),
-            place: zeros(2 * n),
-            lift: zeros(4 * 6 * m),
-            held: zeros(4 * 2 * m),
+            mean: zeros(UNKNOWNS * n),
+            mean_stress: zeros(DEFORMATION * n),
+            contravariant: zeros(DEFORMATION * n),
+            source: zeros(AXES * n),
+            displacement: zeros(AXES * n),
+            lift: zeros(FACES * UNKNOWNS * m),
+            held: zeros(FACES * AXES * m),
             masses: zeros(n),
-            weighted: zeros(4 * n),
-            coefficients: zeros(4 * n),
+            weighted: zeros(DEFORMATION * n),
+            coefficients: zeros(DEFORMATION * n),
         }
     }
 }
@@ -132,12 +134,12 @@ impl<const M: usize> Work for Volume<'_, M> {
     fn run<L: Lanes>(mut self) {
         let n = M * M;
         let [one, two] = cofactors::<L, M>(self.line, &self.metric.load::<L>());
-        let stress = &self.arrays.mean_stress.as_chunks::<4>().0[..n];
-        let contravariant = &mut self.arrays.contravariant.as_chunks_mut::<4>().0[..n];
+        let stress = &self.arrays.mean_stress.as_chunks::<DEFORMATION>().0[..n];
+        let contravariant = &mut self.arrays.contravariant.as_chunks_mut::<DEFORMATION>().0[..n];
         for (i, one) in one.iter().enumerate() {
             for (j, two) in two.iter().enumerate() {
                 let a = i * M + j;
-                let p = load_array::<L, 4>(&stress[a]);
+                let p = load_array::<L, DEFORMATION>(&stress[a]);
                 let (t1, t2) = (tensor::times(p, *one), tensor::times(p, *two));
                 store_array([t1[0], t1[1], t2[0], t2[1]], &mut contravariant[a]);
             }
@@ -182,24 +184,24 @@ impl<const M: usize> Volume<'_, M> {
     fn rates<L: Lanes>(&mut self, one: &[[L; 2]; M], two: &[[L; 2]; M]) {
         let (slope, weak) = (square::<M>(&self.line.slope), square::<M>(&self.line.weak));
         let n = M * M;
-        let mean = &self.arrays.mean.as_chunks::<6>().0[..n];
-        let traction = &self.arrays.contravariant.as_chunks::<4>().0[..n];
-        let rate = &mut self.rate[..6 * n];
+        let mean = &self.arrays.mean.as_chunks::<UNKNOWNS>().0[..n];
+        let traction = &self.arrays.contravariant.as_chunks::<DEFORMATION>().0[..n];
+        let rate = &mut self.rate[..UNKNOWNS * n];
         for i in 0..M {
             for j in 0..M {
                 let a = i * M + j;
-                let first = line_sum::<L, M, 6, 2>(&slope[i], nodes_of(mean, j, M), 4);
-                let second = line_sum::<L, M, 6, 2>(&slope[j], nodes_of(mean, i * M, 1), 4);
+                let first = line_sum::<L, M, UNKNOWNS, AXES>(&slope[i], nodes_of(mean, j, M), DEFORMATION);
+                let second = line_sum::<L, M, UNKNOWNS, AXES>(&slope[j], nodes_of(mean, i * M, 1), DEFORMATION);
                 for r in 0..2 {
                     for axis in 0..2 {
                         let gradient = first[r].mul_add(one[i][axis], second[r] * two[j][axis]);
                         gradient.store(&mut rate[(2 * r + axis) * n + a]);
                     }
                 }
-                let first = line_sum::<L, M, 4, 2>(&weak[i], nodes_of(traction, j, M), 0);
-                let second = line_sum::<L, M, 4, 2>(&weak[j], nodes_of(traction, i * M, 1), 2);
+                let first = line_sum::<L, M, DEFORMATION, AXES>(&weak[i], nodes_of(traction, j, M), 0);
+                let second = line_sum::<L, M, DEFORMATION, AXES>(&weak[j], nodes_of(traction, i * M, 1), 2);
                 for r in 0..2 {
-                    (-(first[r] + second[r])).store(&mut rate[(4 + r) * n + a]);
+                    (-(first[r] + second[r])).store(&mut rate[(DEFORMATION + r) * n + a]);
                 }
             }
         }
@@ -253,7 +255,7 @@ pub struct Traces<'a, const M: usize, const METERED: bool> {
     /// Numbers of a trace, see [`width`].
     pub width: usize,
     /// Whether u is among them.
-    pub placed: bool,
+    pub with_displacement: bool,
     /// [face][point][`width`], out.
     pub traces: &'a mut [F8],
 }
@@ -266,7 +268,7 @@ impl<const M: usize, const METERED: bool> Work for Traces<'_, M, METERED> {
         for face in 0..2 {
             self.of_face::<L, true>(face, metric.normal(face));
         }
-        for face in 2..4 {
+        for face in 2..FACES {
             self.of_face::<L, false>(face, metric.normal(face));
         }
     }
@@ -277,21 +279,27 @@ impl<const M: usize, const METERED: bool> Traces<'_, M, METERED> {
     #[inline(always)]
     fn of_face<L: Lanes, const FIRST: bool>(&mut self, face: usize, normal: [L; 2]) {
         let (ends, held) = (row::<M>(&self.line.ends[face % 2]), row::<M>(&self.line.held[face % 2]));
-        let mean = &self.arrays.mean.as_chunks::<6>().0[..M * M];
-        let mean_stress = &self.arrays.mean_stress.as_chunks::<4>().0[..M * M];
+        let mean = &self.arrays.mean.as_chunks::<UNKNOWNS>().0[..M * M];
+        let mean_stress = &self.arrays.mean_stress.as_chunks::<DEFORMATION>().0[..M * M];
         let width = self.width;
         let out = &mut self.traces[face * M * width..(face + 1) * M * width];
         for (point, out) in out.chunks_exact_mut(width).enumerate().take(M) {
             let (first, stride) = if FIRST { (point, M) } else { (point * M, 1) };
-            let stress = line_sum::<L, M, 4, 4>(&ends, nodes_of(mean_stress, first, stride), 0);
-            store_array(tensor::times(stress, normal), &mut out[6..8]);
+            let stress = line_sum::<L, M, DEFORMATION, DEFORMATION>(&ends, nodes_of(mean_stress, first, stride), 0);
+            store_array(tensor::times(stress, normal), &mut out[UNKNOWNS..UNKNOWNS + AXES]);
             if METERED {
                 store_array(tensor::times(stress, tangent(normal)), &mut out[width - 2..]);
             }
-            store_array(line_sum::<L, M, 6, 6>(&ends, nodes_of(mean, first, stride), 0), &mut out[..6]);
-            if self.placed {
-                let place = &self.arrays.place.as_chunks::<2>().0[..M * M];
-                store_array(line_sum::<L, M, 2, 2>(&held, nodes_of(place, first, stride), 0), &mut out[9..11]);
+            store_array(
+                line_sum::<L, M, UNKNOWNS, UNKNOWNS>(&ends, nodes_of(mean, first, stride), 0),
+                &mut out[..UNKNOWNS],
+            );
+            if self.with_displacement {
+                let displacement = &self.arrays.displacement.as_chunks::<2>().0[..M * M];
+                store_array(
+                    line_sum::<L, M, AXES, AXES>(&held, nodes_of(displacement, first, stride), 0),
+                    &mut out[9..11],
+                );
             }
         }
     }
@@ -342,20 +350,23 @@ impl Work for Speeds<'_> {
 impl Speeds<'_> {
     /// The normals of all faces.
     #[inline(always)]
-    fn normals<L: Lanes>(&self) -> [[L; 2]; 4] {
+    fn normals<L: Lanes>(&self) -> [[L; 2]; FACES] {
         let metric = self.metric.load::<L>();
         [metric.normal(0), metric.normal(1), metric.normal(2), metric.normal(3)]
     }
 
     #[inline(always)]
     fn of_pressure<L: Lanes, M: Material, const W: usize>(&mut self, law: M) -> L {
-        let (m, normals) = (self.traces.len() / W / 4, self.normals::<L>());
+        let (m, normals) = (self.traces.len() / W / FACES, self.normals::<L>());
         let mut smallest = Twin(L::splat(f64::INFINITY), L::splat(f64::INFINITY));
         for pair in 0..2 * m {
             let (a, b) = (2 * pair, 2 * pair + 1);
             let normals = twins(normals[a / m], normals[b / m]);
             let traces = &mut self.traces.as_chunks_mut::<W>().0[a..a + 2];
-            let f = twins(load_array::<L, 4>(&traces[0][..4]), load_array::<L, 4>(&traces[1][..4]));
+            let f = twins(
+                load_array::<L, DEFORMATION>(&traces[0][..DEFORMATION]),
+                load_array::<L, DEFORMATION>(&traces[1][..DEFORMATION]),
+            );
             smallest = smallest.min(tensor::det(f));
             let Twin(one, two) = law.pressure_speed(f, normals);
             one.store(&mut traces[0][8]);
@@ -366,12 +377,12 @@ impl Speeds<'_> {
 
     #[inline(always)]
     fn of_both<L: Lanes, M: Material, const W: usize>(&mut self, law: M) -> L {
-        let (m, normals) = (self.traces.len() / W / 4, self.normals::<L>());
+        let (m, normals) = (self.traces.len() / W / FACES, self.normals::<L>());
         let mut smallest = L::splat(f64::INFINITY);
-        for point in 0..4 * m {
+        for point in 0..FACES * m {
             let normal = normals[point / m];
             let trace = &mut self.traces.as_chunks_mut::<W>().0[point];
-            let f = load_array::<L, 4>(&trace[..4]);
+            let f = load_array::<L, DEFORMATION>(&trace[..DEFORMATION]);
             smallest = smallest.min(tensor::det(f));
             store_array(law.speeds(f, normal), &mut trace[8..10]);
         }

@@ -12,7 +12,7 @@ use dgmpm::mesh::{Mesh, map, rectangle};
 use dgmpm::operators::certificate::certify;
 use dgmpm::operators::{self, Class, Limits, Line, Sampling, Share};
 use dgmpm::state::State;
-use dgmpm::step::{Scheme, Survey, Work, cfl};
+use dgmpm::step::{Motion, Scheme, cfl};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -81,14 +81,13 @@ fn distance(problem: &Problem, scheme: &Scheme, state: &State, base: [f64; 6]) -
 
 /// `steps` steps at .85 of the limit; `see` looks at each state.
 fn walk(scheme: &Scheme, degree: usize, state: &mut State, h: f64, steps: usize, mut see: impl FnMut(usize, &State)) {
-    let (mut work, mut survey) = (Work::new(scheme, state), Survey::default());
+    let mut motion = Motion::new(scheme, std::mem::take(state)).unwrap();
     for step in 1..=steps {
-        scheme.survey(state, &work, &mut survey).unwrap();
-        let dt = 0.85 * cfl::limit(&scheme.method, degree) * h / survey.fastest;
-        scheme.step(state, dt, &survey, &mut work);
-        std::mem::swap(state, &mut work.next);
-        see(step, state);
+        let dt = 0.85 * cfl::limit(&scheme.method, degree) * h / motion.survey.fastest;
+        motion.advance(scheme, dt).unwrap();
+        see(step, &motion.state);
     }
+    *state = motion.state;
 }
 
 #[test]

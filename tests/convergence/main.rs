@@ -15,7 +15,7 @@ mod time_order;
 mod walls;
 
 use dgmpm::material::{Law, LinearElastic};
-use dgmpm::step::{Scheme, Survey, Work, cfl};
+use dgmpm::step::{Motion, Scheme, cfl};
 use meshes::Grid;
 use problem::{Problem, manufactured};
 use solve::{GAUSS, JITTER, KINDS, Kind, MIDPOINTS, MORE, PAPER, alone, scheme, start};
@@ -101,15 +101,12 @@ fn for_a_linear_law_dgmpm_on_any_cloud_is_dgfem() {
     for degree in 1..=3 {
         let end = |kind| {
             let scheme = Scheme { sources: vec![], ..scheme(&problem, &mesh, kind, degree, degree) };
-            let mut state = start(&problem, &mesh, &scheme);
-            let (mut work, mut survey) = (Work::new(&scheme, &state), Survey::default());
+            let mut motion = Motion::new(&scheme, start(&problem, &mesh, &scheme)).unwrap();
             for _ in 0..200 {
-                scheme.survey(&state, &work, &mut survey).unwrap();
-                let dt = 0.85 * cfl::limit(&scheme.method, degree) / 6.0 / survey.fastest;
-                scheme.step(&state, dt, &survey, &mut work);
-                std::mem::swap(&mut state, &mut work.next);
+                let dt = 0.85 * cfl::limit(&scheme.method, degree) / 6.0 / motion.survey.fastest;
+                motion.advance(&scheme, dt).unwrap();
             }
-            state.unpack(&scheme.operators.blocks, scheme.operators.nodes())
+            motion.state.unpack(&scheme.operators.blocks, scheme.operators.nodes())
         };
         let states = alone(|| [Kind::Fem, PAPER, MIDPOINTS, JITTER, MORE].map(end));
         let size = states[0].iter().map(|u| u * u).sum::<f64>().sqrt();

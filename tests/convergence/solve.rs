@@ -102,6 +102,7 @@ fn sampled(problem: &Problem, mesh: &Mesh, sampling: Option<Sampling>, degree: u
         flux: Flux::Rusanov,
         boundaries,
         sources,
+        corrections: vec![],
         curl: problem.alpha.map(|alpha| Control { relax: Relax::Gradient, rate: alpha * degree as f64 }),
         kernel: Kernel::widest(),
     }

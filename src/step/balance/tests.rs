@@ -8,7 +8,7 @@ use crate::riemann::Flux;
 use crate::source::BodyForce;
 use crate::state::State;
 use crate::step::tests::{KINDS, Kind, chessboard, distorted, midpoints, noise, scheme, state, steel, wall, wavy};
-use crate::step::{Method, Survey, Tableau};
+use crate::step::{Method, Motion, Tableau};
 use std::sync::Arc;
 
 /// A condition of the boundary, made anew for each group.
@@ -36,15 +36,15 @@ fn rough(x: [f64; 2], a: usize) -> [f64; 6] {
 
 /// Steps `state` at `courant` = dt c / h and meters it; all that the balance sums, and the energy at the end.
 fn metered(scheme: &Scheme, state: &mut State, steps: usize, courant: f64) -> (Balance, f64) {
-    let mut work = Work::new(scheme, state).with_balance(scheme);
-    let (mut survey, mut balance) = (Survey::default(), Balance::starting_at(scheme.totals(state).energy()));
+    let mut balance = Balance::starting_at(scheme.totals(state).energy());
+    let mut motion = Motion::unsurveyed(scheme, std::mem::take(state)).with_balance(scheme);
+    motion.survey(scheme).unwrap();
     let h = scheme.operators.geometry.h().flat_map(|h| h.0).fold(f64::INFINITY, f64::min);
     for _ in 0..steps {
-        scheme.survey(state, &work, &mut survey).unwrap();
-        scheme.step(state, courant * h / survey.fastest, &survey, &mut work);
-        work.settle(scheme, &mut balance);
-        std::mem::swap(state, &mut work.next);
+        motion.advance(scheme, courant * h / motion.survey.fastest).unwrap();
+        motion.work.settle(scheme, &mut balance);
     }
+    *state = motion.state;
     (balance, scheme.totals(state).energy())
 }
 

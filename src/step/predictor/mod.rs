@@ -12,6 +12,8 @@ use super::{Method, Sweeps};
 use crate::lane::{self, Coefficient, F8, Kernel, Lane, Lanes, Twin, load_array, store_array};
 use crate::material::Material;
 use crate::operators::PointMatrices;
+use crate::state::UNKNOWNS;
+use crate::tensor::{AXES, DEFORMATION};
 use rates::Rates;
 use transfer::{ToNodes, ToPoints};
 
@@ -44,15 +46,15 @@ impl Arrays {
         let Method::Ader { time, sweeps } = method else { return Self::default() };
         let zeros = |fields: usize| vec![F8::ZERO; fields * points];
         Self {
-            start: zeros(6),
-            shifted: if sources { zeros(6) } else { vec![] },
-            rates: [zeros(6 * sweeps.widest()), zeros(6 * sweeps.widest())],
-            q: zeros(6),
-            source: if sources { zeros(2 * time.len()) } else { vec![] },
-            mean: zeros(6),
-            mean_stress: zeros(4),
-            between: vec![F8::ZERO; transfer::factors(m, points, 6)],
-            fitted: vec![F8::ZERO; 6 * m * m],
+            start: zeros(UNKNOWNS),
+            shifted: if sources { zeros(UNKNOWNS) } else { vec![] },
+            rates: [zeros(UNKNOWNS * sweeps.widest()), zeros(UNKNOWNS * sweeps.widest())],
+            q: zeros(UNKNOWNS),
+            source: if sources { zeros(AXES * time.len()) } else { vec![] },
+            mean: zeros(UNKNOWNS),
+            mean_stress: zeros(DEFORMATION),
+            between: vec![F8::ZERO; transfer::factors(m, points, UNKNOWNS)],
+            fitted: vec![F8::ZERO; UNKNOWNS * m * m],
         }
     }
 }
@@ -86,13 +88,13 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
     pub fn run<L: Lanes>(&self, arrays: &mut Arrays) {
         let (np, times) = (self.matrices.points(), self.weights.len());
         // One metric for all points turns P to the axes of the cell before it is differentiated: fewer products.
-        let constant = (self.metric.len() == 4).then(|| load_array::<L, 4>(self.metric));
+        let constant = (self.metric.len() == DEFORMATION).then(|| load_array::<L, DEFORMATION>(self.metric));
         let mut row = Row::default();
         for sweep in &self.sweeps.inner {
             for s in 0..sweep.to {
                 self.shift::<L>(arrays, &sweep.sources[s * times..(s + 1) * times]);
                 let Arrays { start, shifted, rates: [before, _], q, .. } = arrays;
-                let base = if shifted.is_empty() { &start[..6 * np] } else { &shifted[..6 * np] };
+                let base = if shifted.is_empty() { &start[..UNKNOWNS * np] } else { &shifted[..UNKNOWNS * np] };
                 self.row(&sweep.rates[s * sweep.from..(s + 1) * sweep.from], &mut row);
                 let rows = &row[..sweep.from];
                 match constant {
@@ -103,7 +105,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
                     self.fit(arrays);
                 }
                 let Arrays { rates: [_, now], q, .. } = arrays;
-                let (q, out) = (&q[..6 * np], &mut now[6 * np * s..6 * np * (s + 1)]);
+                let (q, out) = (&q[..UNKNOWNS * np], &mut now[UNKNOWNS * np * s..UNKNOWNS * np * (s + 1)]);
                 self.kernel.run(Rates { matrices: self.matrices, metric: self.metric, q, out });
             }
             let [before, now] = &mut arrays.rates;
@@ -121,9 +123,9 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
     #[inline(always)]
     fn fit(&self, arrays: &mut Arrays) {
         let Arrays { q, between, fitted, .. } = arrays;
-        let q = &mut q[..6 * self.matrices.points()];
-        self.kernel.run(ToNodes::<C, 6> { matrices: self.matrices, points: q, between, nodes: fitted });
-        self.kernel.run(ToPoints::<C, 6> { matrices: self.matrices, nodes: fitted, between, points: q });
+        let q = &mut q[..UNKNOWNS * self.matrices.points()];
+        self.kernel.run(ToNodes::<C, UNKNOWNS> { matrices: self.matrices, points: q, between, nodes: fitted });
+        self.kernel.run(ToPoints::<C, UNKNOWNS> { matrices: self.matrices, nodes: fitted, between, points: q });
     }
 
     /// dt times the entries of a row, into the first numbers of `out`. By loops of constant length: one of any length is
@@ -149,12 +151,13 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
             return;
         }
         let np = self.matrices.points();
-        arrays.shifted[..6 * np].copy_from_slice(&arrays.start[..6 * np]);
+        arrays.shifted[..UNKNOWNS * np].copy_from_slice(&arrays.start[..UNKNOWNS * np]);
         for (k, entry) in row.iter().enumerate() {
             let factor = L::splat(self.dt * self.law.density() * entry);
             for p in 0..np {
                 for i in 0..2 {
-                    let (b, u) = (&arrays.source[2 * (k * np + p) + i], &mut arrays.shifted[6 * p + 4 + i]);
+                    let (b, u) =
+                        (&arrays.source[2 * (k * np + p) + i], &mut arrays.shifted[UNKNOWNS * p + DEFORMATION + i]);
                     factor.mul_add(L::load(b), L::load(u)).store(u);
                 }
             }
@@ -175,26 +178,29 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
     /// [`Predictor::sample`] for lengths that may be constants.
     #[inline(always)]
     fn sample_of<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], turn: impl Turn<L>, q: &mut [F8]) {
-        let (base, before) = (base.as_chunks::<6>().0, before.as_chunks::<6>().0);
-        let q = &mut q.as_chunks_mut::<6>().0[..base.len()];
+        let (base, before) = (base.as_chunks::<UNKNOWNS>().0, before.as_chunks::<UNKNOWNS>().0);
+        let q = &mut q.as_chunks_mut::<UNKNOWNS>().0[..base.len()];
         let twins = if M::INTERNAL.is_empty() { base.len() / 2 * 2 } else { 0 };
         let (pairs, rest) = q.split_at_mut(twins);
         for (pair, q) in pairs.as_chunks_mut::<2>().0.iter_mut().enumerate() {
             let p = 2 * pair;
-            let f = lane::twins(state::<L, 0, 4>(base, before, row, p), state::<L, 0, 4>(base, before, row, p + 1));
+            let f = lane::twins(
+                state::<L, 0, DEFORMATION>(base, before, row, p),
+                state::<L, 0, DEFORMATION>(base, before, row, p + 1),
+            );
             let [one, two] = lane::apart(self.law.stress(f, &mut []));
             put::<L>(turn.apply(one), &mut q[0]);
             put::<L>(turn.apply(two), &mut q[1]);
         }
         for (k, q) in rest.iter_mut().enumerate() {
-            let f = state::<L, 0, 4>(base, before, row, twins + k);
+            let f = state::<L, 0, DEFORMATION>(base, before, row, twins + k);
             let mut internal = recall::<L, M>(self.law, self.internal, twins + k);
             put::<L>(turn.apply(self.law.stress(f, &mut internal[..M::INTERNAL.len()])), q);
         }
         let q = &mut q[..base.len()];
         let inverse_density = L::splat(1.0 / self.law.density());
         for (p, q) in q.iter_mut().enumerate() {
-            let momentum = state::<L, 4, 2>(base, before, row, p);
+            let momentum = state::<L, DEFORMATION, AXES>(base, before, row, p);
             (momentum[0] * inverse_density).store(&mut q[2]);
             (momentum[1] * inverse_density).store(&mut q[3]);
         }
@@ -208,28 +214,31 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         self.shift::<L>(arrays, &sweeps.mean_sources);
         let Arrays { start, shifted, rates: [before, _], mean, mean_stress, .. } = arrays;
         let base = if shifted.is_empty() { &*start } else { &*shifted };
-        let (start, base, before) = (start.as_chunks::<6>().0, base.as_chunks::<6>().0, before.as_chunks::<6>().0);
+        let (start, base, before) =
+            (start.as_chunks::<UNKNOWNS>().0, base.as_chunks::<UNKNOWNS>().0, before.as_chunks::<UNKNOWNS>().0);
         let (start, base) = (&start[..np], &base[..np]);
         let (mut mean_row, mut rows) = (Row::default(), [Row::default(); 8]);
         self.row(&sweeps.mean_rates, &mut mean_row);
         for (s, row) in rows.iter_mut().enumerate().take(to) {
             self.row(&last.rates[s * from..(s + 1) * from], row);
         }
-        for (p, mean) in mean.as_chunks_mut::<6>().0[..np].iter_mut().enumerate() {
-            let u = state::<L, 0, 6>(base, before, &mean_row[..from], p);
+        for (p, mean) in mean.as_chunks_mut::<UNKNOWNS>().0[..np].iter_mut().enumerate() {
+            let u = state::<L, 0, UNKNOWNS>(base, before, &mean_row[..from], p);
             store_array([u[0], u[1], u[2], u[3], u[4] * inverse_density, u[5] * inverse_density], mean);
         }
         // Two points at a time as in `sample`. Sources do not act on F: from U^n itself.
-        let mean_stress = &mut mean_stress.as_chunks_mut::<4>().0[..np];
+        let mean_stress = &mut mean_stress.as_chunks_mut::<DEFORMATION>().0[..np];
         let (rows, twins) = (&rows[..to], if M::INTERNAL.is_empty() { np / 2 * 2 } else { 0 });
         let (pairs, rest) = mean_stress.split_at_mut(twins);
         for (pair, mean_stress) in pairs.as_chunks_mut::<2>().0.iter_mut().enumerate() {
             let p = 2 * pair;
-            let mut sum = [Twin::<L>::zero(); 4];
+            let mut sum = [Twin::<L>::zero(); DEFORMATION];
             for (row, weight) in rows.iter().zip(self.weights) {
                 let row = &row[..from];
-                let f =
-                    lane::twins(state::<L, 0, 4>(start, before, row, p), state::<L, 0, 4>(start, before, row, p + 1));
+                let f = lane::twins(
+                    state::<L, 0, DEFORMATION>(start, before, row, p),
+                    state::<L, 0, DEFORMATION>(start, before, row, p + 1),
+                );
                 add(*weight, self.law.stress(f, &mut []), &mut sum);
             }
             let [one, two] = lane::apart(sum);
@@ -237,9 +246,9 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
             store_array(two, &mut mean_stress[1]);
         }
         for (k, mean_stress) in rest.iter_mut().enumerate() {
-            let (p, mut sum) = (twins + k, [L::zero(); 4]);
+            let (p, mut sum) = (twins + k, [L::zero(); DEFORMATION]);
             for (row, weight) in rows.iter().zip(self.weights) {
-                let f = state::<L, 0, 4>(start, before, &row[..from], p);
+                let f = state::<L, 0, DEFORMATION>(start, before, &row[..from], p);
                 let mut internal = recall::<L, M>(self.law, self.internal, p);
                 add(*weight, self.law.stress(f, &mut internal[..M::INTERNAL.len()]), &mut sum);
             }
@@ -269,8 +278,8 @@ fn add<L: Lane>(weight: f64, x: [L; 4], sum: &mut [L; 4]) {
 /// Fields FIRST to FIRST + K of base + sum_k row[k] r_k at point p.
 #[inline(always)]
 fn state<L: Lanes, const FIRST: usize, const K: usize>(
-    base: &[[F8; 6]],
-    before: &[[F8; 6]],
+    base: &[[F8; UNKNOWNS]],
+    before: &[[F8; UNKNOWNS]],
     row: &[f64],
     p: usize,
 ) -> [L; K] {
@@ -286,7 +295,7 @@ fn state<L: Lanes, const FIRST: usize, const K: usize>(
 
 /// Puts what is differentiated of P where [`Rates`] wants it.
 #[inline(always)]
-fn put<L: Lanes>(stress: [L; 4], q: &mut [F8; 6]) {
+fn put<L: Lanes>(stress: [L; 4], q: &mut [F8; UNKNOWNS]) {
     stress[0].store(&mut q[0]);
     stress[1].store(&mut q[1]);
     stress[2].store(&mut q[4]);

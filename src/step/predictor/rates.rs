@@ -2,6 +2,8 @@
 
 use crate::lane::{Coefficient, F8, Lanes, Work, load_array, store_array};
 use crate::operators::{Matrix, PointMatrices};
+use crate::state::UNKNOWNS;
+use crate::tensor::DEFORMATION;
 
 /// The rates of one time node from Q, with the derivatives of chi. A [`Work`] of its own, so that it is compiled once,
 /// not once a law.
@@ -29,7 +31,7 @@ impl<C: Coefficient> Work for Rates<'_, C> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Rates { matrices, metric, q, out } = self;
-        let (q, out) = (q.as_chunks::<6>().0, out.as_chunks_mut::<6>().0);
+        let (q, out) = (q.as_chunks::<UNKNOWNS>().0, out.as_chunks_mut::<UNKNOWNS>().0);
         match matrices {
             PointMatrices::Dense { slope, .. } => dense::<L, C>(slope, metric, q, out),
             PointMatrices::Lattice([a, b]) => lattices::<L, C>([&a.slope, &b.slope], metric, q, out),
@@ -40,7 +42,12 @@ impl<C: Coefficient> Work for Rates<'_, C> {
 
 /// The number of points per direction as a constant where it is one of those in use: short loops are unrolled.
 #[inline(always)]
-fn lattices<L: Lanes, C: Coefficient>(slope: [&Matrix<C>; 2], metric: &[F8], q: &[[F8; 6]], out: &mut [[F8; 6]]) {
+fn lattices<L: Lanes, C: Coefficient>(
+    slope: [&Matrix<C>; 2],
+    metric: &[F8],
+    q: &[[F8; UNKNOWNS]],
+    out: &mut [[F8; UNKNOWNS]],
+) {
     let d = [&slope[0].data[..], &slope[1].data[..]];
     match slope[0].rows {
         1 => lattice::<L, C>(1, d, metric, q, out),
@@ -64,9 +71,15 @@ struct Stencil<'a, C> {
 
 /// Sum factorisation: derivatives of chi along xi1, xi2 are 1D matrices `d`, k x k, along lines of points.
 #[inline(always)]
-fn lattice<L: Lanes, C: Coefficient>(k: usize, d: [&[C]; 2], metric: &[F8], q: &[[F8; 6]], out: &mut [[F8; 6]]) {
+fn lattice<L: Lanes, C: Coefficient>(
+    k: usize,
+    d: [&[C]; 2],
+    metric: &[F8],
+    q: &[[F8; UNKNOWNS]],
+    out: &mut [[F8; UNKNOWNS]],
+) {
     let (d, q, out) = ([&d[0][..k * k], &d[1][..k * k]], &q[..k * k], &mut out[..k * k]);
-    let constant = (metric.len() == 4).then(|| load_array::<L, 4>(metric));
+    let constant = (metric.len() == DEFORMATION).then(|| load_array::<L, DEFORMATION>(metric));
     for i in 0..k {
         for j in 0..k {
             let first = Stencil { entries: &d[0][i * k..(i + 1) * k], first: j, stride: k };
@@ -74,7 +87,7 @@ fn lattice<L: Lanes, C: Coefficient>(k: usize, d: [&[C]; 2], metric: &[F8], q: &
             let p = i * k + j;
             let rate = match constant {
                 Some(metric) => turned(eight::<L, C>(first, second, q), metric),
-                None => twelve::<L, C>(&first, &second, q, &metric[4 * p..4 * p + 4]),
+                None => twelve::<L, C>(&first, &second, q, &metric[DEFORMATION * p..DEFORMATION * (p + 1)]),
             };
             store_array(rate, &mut out[p]);
         }
@@ -83,15 +96,20 @@ fn lattice<L: Lanes, C: Coefficient>(k: usize, d: [&[C]; 2], metric: &[F8], q: &
 
 /// Any cloud: derivatives at a point are rows over all points of the cell.
 #[inline(always)]
-fn dense<L: Lanes, C: Coefficient>(slope: &[Matrix<C>; 2], metric: &[F8], q: &[[F8; 6]], out: &mut [[F8; 6]]) {
-    let constant = (metric.len() == 4).then(|| load_array::<L, 4>(metric));
+fn dense<L: Lanes, C: Coefficient>(
+    slope: &[Matrix<C>; 2],
+    metric: &[F8],
+    q: &[[F8; UNKNOWNS]],
+    out: &mut [[F8; UNKNOWNS]],
+) {
+    let constant = (metric.len() == DEFORMATION).then(|| load_array::<L, DEFORMATION>(metric));
     for (p, out) in out.iter_mut().enumerate() {
         let first = Stencil { entries: slope[0].row(p), first: 0, stride: 1 };
         let second = Stencil { entries: slope[1].row(p), first: 0, stride: 1 };
         let rate = match constant {
             Some(metric) => turned(eight::<L, C>(first, second, q), metric),
             None if metric.is_empty() => straight(eight::<L, C>(first, second, q)),
-            None => twelve::<L, C>(&first, &second, q, &metric[4 * p..4 * p + 4]),
+            None => twelve::<L, C>(&first, &second, q, &metric[DEFORMATION * p..DEFORMATION * (p + 1)]),
         };
         store_array(rate, out);
     }
@@ -99,8 +117,8 @@ fn dense<L: Lanes, C: Coefficient>(slope: &[Matrix<C>; 2], metric: &[F8], q: &[[
 
 /// [d1 v1, d1 v2, d2 v1, d2 v2, d1 a1 + d2 b1, d1 a2 + d2 b2] at a point: 12 of 16 registers hold sums.
 #[inline(always)]
-fn eight<L: Lanes, C: Coefficient>(first: Stencil<C>, second: Stencil<C>, q: &[[F8; 6]]) -> [L; 6] {
-    let mut sum = [L::zero(); 6];
+fn eight<L: Lanes, C: Coefficient>(first: Stencil<C>, second: Stencil<C>, q: &[[F8; UNKNOWNS]]) -> [L; UNKNOWNS] {
+    let mut sum = [L::zero(); UNKNOWNS];
     for (k, entry) in first.entries.iter().enumerate() {
         let (entry, q) = (entry.lanes::<L>(), &q[first.first + k * first.stride]);
         sum[4] = entry.mul_add(L::load(&q[0]), sum[4]);
@@ -120,13 +138,13 @@ fn eight<L: Lanes, C: Coefficient>(first: Stencil<C>, second: Stencil<C>, q: &[[
 
 /// Matrices along X1, X2: nothing to turn.
 #[inline(always)]
-fn straight<L: Lanes>(sum: [L; 6]) -> [L; 6] {
+fn straight<L: Lanes>(sum: [L; UNKNOWNS]) -> [L; UNKNOWNS] {
     [sum[0], sum[2], sum[1], sum[3], sum[4], sum[5]]
 }
 
 /// D_a v = sum_b dxi_b/dX_a d_b v with the metric [b][a]; the divergence is done already.
 #[inline(always)]
-fn turned<L: Lanes>(sum: [L; 6], m: [L; 4]) -> [L; 6] {
+fn turned<L: Lanes>(sum: [L; UNKNOWNS], m: [L; 4]) -> [L; UNKNOWNS] {
     [
         sum[0].mul_add(m[0], sum[2] * m[2]),
         sum[0].mul_add(m[1], sum[2] * m[3]),
@@ -139,9 +157,14 @@ fn turned<L: Lanes>(sum: [L; 6], m: [L; 4]) -> [L; 6] {
 
 /// All six fields along both directions, then the metric of the point. Two fields at a time: 8 of 16 registers.
 #[inline(always)]
-fn twelve<L: Lanes, C: Coefficient>(first: &Stencil<C>, second: &Stencil<C>, q: &[[F8; 6]], metric: &[F8]) -> [L; 6] {
+fn twelve<L: Lanes, C: Coefficient>(
+    first: &Stencil<C>,
+    second: &Stencil<C>,
+    q: &[[F8; UNKNOWNS]],
+    metric: &[F8],
+) -> [L; UNKNOWNS] {
     let a = pair::<L, C, 0>(first, second, q);
-    let [m11, m12, m21, m22] = load_array::<L, 4>(metric);
+    let [m11, m12, m21, m22] = load_array::<L, DEFORMATION>(metric);
     let (div1, div2) = (a[0].mul_add(m11, a[2] * m21), a[1].mul_add(m11, a[3] * m21));
     let b = pair::<L, C, 4>(first, second, q);
     let (div1, div2) = (b[0].mul_add(m12, b[2].mul_add(m22, div1)), b[1].mul_add(m12, b[3].mul_add(m22, div2)));
@@ -151,7 +174,11 @@ fn twelve<L: Lanes, C: Coefficient>(first: &Stencil<C>, second: &Stencil<C>, q: 
 
 /// Fields F and F + 1: [d1, d1, d2, d2].
 #[inline(always)]
-fn pair<L: Lanes, C: Coefficient, const F: usize>(first: &Stencil<C>, second: &Stencil<C>, q: &[[F8; 6]]) -> [L; 4] {
+fn pair<L: Lanes, C: Coefficient, const F: usize>(
+    first: &Stencil<C>,
+    second: &Stencil<C>,
+    q: &[[F8; UNKNOWNS]],
+) -> [L; 4] {
     let mut sum = [L::zero(); 4];
     for (k, entry) in first.entries.iter().enumerate() {
         let (entry, q) = (entry.lanes::<L>(), &q[first.first + k * first.stride]);

@@ -10,7 +10,8 @@
 
 mod planner;
 
-use super::Stage;
+use crate::lane::LANES;
+use crate::mesh::FACES;
 use crate::operators::{Blocks, Neighbour};
 use planner::Planner;
 use std::ops::Range;
@@ -99,6 +100,32 @@ impl Plan {
         best
     }
 
+    /// The same tiles stage by stage: all blocks begin a stage in one phase, and finish it in the next one.
+    pub fn by_stages(mut self, stages: usize) -> Self {
+        let (tiles, blocks) = (self.tiles.len(), self.tiles.last().map_or(0, |tile| tile.range.end));
+        self.slots = vec![Slot::default(); stages * blocks];
+        self.shown = vec![0; 2 * stages * tiles];
+        for (number, tile) in self.tiles.iter_mut().enumerate() {
+            let range = tile.range.clone();
+            *tile = Tile { events: vec![], phases: vec![], rates: range.len(), traces: 0, range, falls: false };
+            for phase in 0..2 * stages {
+                let (stage, begins) = (phase / 2, phase % 2 == 0);
+                let store = phase * tiles + number;
+                let first = tile.events.len();
+                for (index, block) in tile.range.clone().enumerate() {
+                    let (index, block32) = (index as u32, block as u32);
+                    tile.events.push(Event { block: block32, rates: index, stage: stage as u8, begins });
+                    if begins {
+                        self.slots[stage * blocks + block] = Slot { store: 1 + store as u32, index };
+                        self.shown[store] += 1;
+                    }
+                }
+                tile.phases.push(first..tile.events.len());
+            }
+        }
+        self
+    }
+
     /// The number of phases.
     pub fn phases(&self) -> usize {
         self.tiles.first().map_or(0, |tile| tile.phases.len())
@@ -113,9 +140,9 @@ impl Plan {
 
 /// For each block the blocks that touch it, ascending, itself among them.
 pub fn graph(blocks: &Blocks) -> Vec<Vec<usize>> {
-    let around = |(block, neighbours): (usize, &[[Neighbour; 8]; 4])| {
+    let around = |(block, neighbours): (usize, &[[Neighbour; LANES]; FACES])| {
         let linked = neighbours.iter().flatten().filter_map(|neighbour| match neighbour {
-            Neighbour::Cell(across) | Neighbour::Interface(across, _) => Some(across.face / 4),
+            Neighbour::Cell(across) | Neighbour::Interface(across, _) => Some(across.face / FACES),
             Neighbour::Boundary(_) | Neighbour::Padding => None,
         });
         let mut all: Vec<usize> = linked.chain([block]).collect();
@@ -124,14 +151,6 @@ pub fn graph(blocks: &Blocks) -> Vec<Vec<usize>> {
         all
     };
     blocks.neighbours.iter().enumerate().map(around).collect()
-}
-
-/// Time nodes of the stages of a step on the stack: at most so many stages.
-pub const STAGES: usize = 12;
-
-/// The stages 0 to `STAGES` of a step, each with its one time node.
-pub fn stages<'a>(times: &'a [[crate::boundary::TimeNode; 1]; STAGES], dt: f64) -> [Stage<'a>; STAGES] {
-    std::array::from_fn(|number| Stage { number, times: &times[number], dt })
 }
 
 #[cfg(test)]

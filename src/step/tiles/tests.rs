@@ -132,6 +132,9 @@ fn check(graph: &[Vec<usize>], stages: usize, tiles: usize) -> Plan {
     let events: usize = plan.tiles.iter().map(|tile| tile.events.len()).sum();
     assert_eq!(events, 2 * stages * graph.len(), "something is done twice");
     assert!(plan.tiles.iter().all(|tile| tile.phases.last().is_some_and(|phase| phase.end == tile.events.len())));
+    let by_stages = plan.clone().by_stages(stages);
+    assert_eq!(by_stages.phases(), 2 * stages);
+    assert_eq!(play(graph, stages, &by_stages), stage_by_stage(graph, stages));
     plan
 }
 

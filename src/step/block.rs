@@ -1,0 +1,83 @@
+//! A block in a stage of a step: what all phases ask for.
+
+use super::volume::{Masses, with_nodes};
+use super::{Scheme, Stage};
+use crate::lane::F8;
+use crate::material::Law;
+use crate::operators::{Metric, Points};
+use crate::riemann::Medium;
+use crate::state::State;
+
+/// A block in a stage.
+#[derive(Clone, Copy)]
+pub(super) struct Block<'a> {
+    /// The scheme.
+    pub scheme: &'a Scheme,
+    /// The stage.
+    pub stage: &'a Stage<'a>,
+    /// The number of the block.
+    pub number: usize,
+}
+
+impl<'a> Block<'a> {
+    /// Its metric terms.
+    #[inline]
+    pub fn metric(&self) -> &'a Metric<F8> {
+        &self.scheme.operators.geometry.blocks[self.number]
+    }
+
+    /// The number of its material.
+    #[inline]
+    pub fn material(&self) -> usize {
+        self.scheme.operators.blocks.material[self.number]
+    }
+
+    /// Its law.
+    #[inline]
+    pub fn law(&self) -> &'a Law {
+        &self.scheme.laws[self.material()]
+    }
+
+    /// What its cells are made of.
+    #[inline]
+    pub fn medium(&self) -> Medium<f64> {
+        Medium::new(self.law(), self.scheme.operators.degree)
+    }
+
+    /// Its lanes that are cells, not padding.
+    #[inline]
+    pub fn cells(&self) -> usize {
+        self.scheme.operators.blocks.count[self.number]
+    }
+
+    /// The material points of the body; none where the nodes take their place.
+    #[inline]
+    pub fn points(&self) -> Option<&'a Points> {
+        self.scheme.operators.points.as_ref()
+    }
+
+    /// Its unknowns in a state, [component][node].
+    #[inline]
+    pub fn unknowns<'s>(&self, state: &'s State) -> &'s [F8] {
+        let stride = state.components * self.scheme.operators.nodes();
+        &state.u[stride * self.number..stride * (self.number + 1)]
+    }
+
+    /// Its internal variables in a state.
+    #[inline]
+    pub fn internal<'s>(&self, state: &'s State) -> &'s [F8] {
+        self.scheme.histories.of(&state.internal, self.number)
+    }
+
+    /// dt b_s: what the rate of the stage counts in the step.
+    #[inline]
+    pub fn factor(&self) -> f64 {
+        self.stage.dt * self.scheme.weight(self.stage.number)
+    }
+
+    /// Finds w_a J_a, its mass matrix.
+    pub fn find_masses(&self, masses: &mut [F8]) {
+        let (line, metric) = (&self.scheme.operators.line, self.metric());
+        with_nodes!(line.m, M => { self.scheme.kernel.run(Masses::<'_, M> { line, metric, masses }); });
+    }
+}

@@ -1,0 +1,84 @@
+//! A body in motion: its state, what the survey tells of it, and the memory of the steps.
+
+use super::{Loss, Scheme, Survey, Work};
+use crate::state::State;
+
+/// A state that goes from step to step.
+///
+/// The survey is always that of the state: it sets the next step size and the rate of the control of the curl.
+pub struct Motion {
+    /// The state.
+    pub state: State,
+    /// Its survey.
+    pub survey: Survey,
+    /// The memory of the steps.
+    pub work: Work,
+    /// The survey of the state that the last step made, or after it of the state before that step.
+    other: Survey,
+}
+
+impl Motion {
+    /// Begins with `state`, and surveys it at its points, nodes and faces.
+    ///
+    /// # Errors
+    /// The first cell that has no stability in `state`.
+    pub fn new(scheme: &Scheme, state: State) -> Result<Self, Loss> {
+        let mut motion = Self::unsurveyed(scheme, state);
+        motion.survey(scheme)?;
+        Ok(motion)
+    }
+
+    /// Begins with `state`, which [`Motion::survey`] has to look at before the first step.
+    pub fn unsurveyed(scheme: &Scheme, state: State) -> Self {
+        let work = Work::new(scheme, &state);
+        Self { state, work, survey: Survey::default(), other: Survey::default() }
+    }
+
+    /// The same with a balance of energy, see [`Work::with_balance`].
+    pub fn with_balance(mut self, scheme: &Scheme) -> Self {
+        self.work = self.work.with_balance(scheme);
+        self
+    }
+
+    /// Surveys the state at its points, nodes and faces ([`Scheme::survey_all`]): for a state that no step has made.
+    ///
+    /// # Errors
+    /// The first cell that has no stability.
+    pub fn survey(&mut self, scheme: &Scheme) -> Result<(), Loss> {
+        scheme.survey_all(&self.state, &self.work, &mut self.survey)
+    }
+
+    /// Does a step of `dt`, and surveys the result.
+    ///
+    /// # Errors
+    /// The first cell that lost stability; the state is then the one before the step.
+    pub fn advance(&mut self, scheme: &Scheme, dt: f64) -> Result<(), Loss> {
+        self.advance_to(scheme, dt, self.state.time + dt)
+    }
+
+    /// Does a step of `dt` after which the time is `time`: t + dt, but for a rounding.
+    ///
+    /// # Errors
+    /// As [`Motion::advance`].
+    pub fn advance_to(&mut self, scheme: &Scheme, dt: f64, time: f64) -> Result<(), Loss> {
+        scheme.step_to(&self.state, &self.survey, dt, time, &mut self.work);
+        scheme.surveyed(&mut self.work, &mut self.other)?;
+        std::mem::swap(&mut self.state, &mut self.work.next);
+        std::mem::swap(&mut self.survey, &mut self.other);
+        Ok(())
+    }
+
+    /// Does a step of `dt` as [`Motion::advance`] does, and stays at the state before it.
+    ///
+    /// # Errors
+    /// As [`Motion::advance`].
+    pub fn attempt(&mut self, scheme: &Scheme, dt: f64) -> Result<(), Loss> {
+        scheme.step(&self.state, dt, &self.survey, &mut self.work);
+        scheme.surveyed(&mut self.work, &mut self.other)
+    }
+
+    /// The state before the last step, whose memory the next step writes over, and its survey.
+    pub fn former(&mut self) -> (&mut State, &Survey) {
+        (&mut self.work.next, &self.other)
+    }
+}
