@@ -43,7 +43,7 @@ pub struct Args {
     /// Where the stiffer one is: checkerboard, or halves
     #[arg(long, value_name = "NAME", default_value = "checkerboard")]
     pattern: String,
-    /// Methods
+    /// Methods [default: that of the scene; rk-dgfem without one]
     #[arg(long, value_name = "NAME,..")]
     method: Option<String>,
     /// Degrees N = N_T
@@ -96,7 +96,10 @@ pub struct Args {
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     args.threads.map_or(Ok(()), super::threads::start_threads)?;
-    let questions = Questions { angles: args.angles.max(2), limit: args.limit, norms: args.norms };
+    if args.angles < 2 {
+        return Err(Error::input(format!("--angles is {}", args.angles), "give a number from 2"));
+    }
+    let questions = Questions { angles: args.angles, limit: args.limit, norms: args.norms };
     for path in [&args.csv, &args.plot].into_iter().flatten() {
         if path.exists() && !args.force {
             return Err(Error::input(

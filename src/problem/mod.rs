@@ -124,7 +124,14 @@ impl<'a> Setup<'a> {
     /// # Errors
     /// Bad input, with its place.
     pub fn body(&mut self) -> Result<Body> {
-        let mesh = self.mesh.take().map_or_else(|| self.scene.build_mesh(), Ok)?;
+        let mesh = match self.mesh.take() {
+            Some(mesh) => {
+                self.scene.check_mesh(&mesh)?;
+                self.scene.check_exact_materials(&mesh)?;
+                mesh
+            }
+            None => self.scene.build_mesh()?,
+        };
         let given = self.points.take().map_or_else(|| self.scene.given_points(&mesh), Ok)?;
         Body::new(self.scene, mesh, given)
     }
@@ -147,18 +154,27 @@ impl<'a> Setup<'a> {
         self.build_from(body, |mesh, scheme| scene.initial_state(mesh, scheme))
     }
 
+    /// The scheme on a body of this scene, and in words where its matrices come from.
+    ///
+    /// # Errors
+    /// A cell whose points cannot carry the degree; stored matrices that cannot be written.
+    pub fn scheme(self, body: &Body) -> Result<(Scheme, String)> {
+        let Self { scene, kernel, store, .. } = self;
+        let (operators, origin) = match store {
+            Some(store) => store.operators(scene, body)?,
+            None => (body.operators(scene)?, String::new()),
+        };
+        Ok((scene.build_scheme(&body.mesh, operators, kernel), origin))
+    }
+
     /// The problem on a body of this scene, from another start than that of the scene.
     ///
     /// # Errors
     /// Bad input, with its place; what `start` says.
     pub fn build_from(self, body: Body, start: impl FnOnce(&Mesh, &Scheme) -> Result<State>) -> Result<Problem> {
-        let Self { scene, kernel, store, .. } = self;
+        let scene = self.scene;
         let settings = scene.settings()?;
-        let (operators, origin) = match store {
-            Some(store) => store.operators(scene, &body)?,
-            None => (body.operators(scene)?, String::new()),
-        };
-        let scheme = scene.build_scheme(&body.mesh, operators, kernel);
+        let (scheme, origin) = self.scheme(&body)?;
         let state = start(&body.mesh, &scheme)?;
         Ok(Problem { scene: scene.clone(), body, scheme, state, settings, files: GridFiles::default(), origin })
     }

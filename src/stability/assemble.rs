@@ -9,6 +9,7 @@
 
 use super::Problem;
 use crate::error::{Error, Result};
+use crate::material::Law;
 use crate::state::{State, UNKNOWNS};
 use crate::step::{Survey, Work};
 use rayon::prelude::*;
@@ -173,6 +174,7 @@ impl<'a> Assembler<'a> {
     pub fn best(&self, operator: Operator) -> Result<Differences> {
         let spans: &[f64] = if operator == Operator::SemiDiscrete { &SPANS } else { &SPANS[..1] };
         let degree = self.problem.scheme.operators.degree;
+        let near = self.nearness();
         let ways = DISTANCES.iter().flat_map(|way| spans.iter().map(move |span| (*way, span * SPAN[degree.min(6)])));
         let tried: Vec<Differences> = ways
             .collect::<Vec<_>>()
@@ -180,7 +182,7 @@ impl<'a> Assembler<'a> {
             .map_init(
                 || self.memory(),
                 |memory, ((distance, levels, order), span)| {
-                    let how = Differences { distance, levels, order, span, noise: 0.0 };
+                    let how = Differences { distance: near * distance, levels, order, span, noise: 0.0 };
                     Differences { noise: self.noise(memory, &how, operator), ..how }
                 },
             )
@@ -194,6 +196,16 @@ impl<'a> Assembler<'a> {
             0 => Err(Error::input("a step from this state gives numbers that are not finite", "give another state")),
             _ => Ok(best),
         }
+    }
+
+    /// What distances are multiplied by. A law that stiffens by pressure bends on the scale mu/kappa: the prestress of a difference e is
+    /// kappa e, and bends at a state without any. The few columns that tell how much a way errs may not see it.
+    fn nearness(&self) -> f64 {
+        let of = |law: &Law| {
+            let [c_p, c_s] = law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0]);
+            if law.is_objective() { (4.0 * (c_s / c_p).powi(2)).min(1.0) } else { 1.0 }
+        };
+        self.problem.scheme.laws.iter().map(of).fold(1.0, f64::min)
     }
 
     /// The largest difference of some columns by two ways, infinite where numbers are not finite.

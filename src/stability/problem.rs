@@ -111,10 +111,9 @@ impl Setup {
         if let Some(unit) = unit {
             body.cloud = repeated(&body.cloud, unit, unit.map(|n| n * units));
         }
-        let problem = setup
-            .build_from(body, |mesh, scheme| Ok(without_displacement(scheme, scene.initial_state(mesh, scheme)?)))?;
-        let problem::Problem { body, scheme, state, .. } = problem;
+        let (scheme, _) = setup.scheme(&body)?;
         let mesh = body.mesh;
+        let state = without_displacement(&scheme, scene.initial_state(&mesh, &scheme)?);
         Problem::new(mesh, scheme, state, scene, (unit, units), (courant, known_limit))
     }
 
