@@ -193,11 +193,11 @@ fn a_spinning_square_keeps_energy_spin_and_shape_over_ten_turns() {
     let size = 7800.0 * (200.0 * std::f64::consts::PI).powi(2) / 2e11;
     let mesh = rectangle([1.0, 1.0], [4, 4]).unwrap();
     // The bounds of change of spin and of loss of energy are about twice what was measured: spin 2.7e-4, 7.4e-7, 3.4e-5,
-    // energy -3.1e-4, -1.0e-4, -8.0e-4. The scene's own mesh has less.
+    // energy -8e-4 (-3.1e-4 with theta = .5), -1.0e-4, -8.0e-4. The scene's own mesh has less.
     // Energy never rises above its start: to rounding, but for one ledger row of RK, at 4.7e-7 (twice that is let by),
     // which the quadrature of the first waves from the sides makes; the rows fall below the start right after.
     for (method, degree, most_spin, most_loss, most_rise) in [
-        ("ader-dgmpm", 2, 1.5e-3, 6.2e-4, 1e-13),
+        ("ader-dgmpm", 2, 1.5e-3, 1.6e-3, 1e-13),
         ("ader-dgmpm", 3, 1.5e-6, 2e-4, 1e-13),
         ("rk-dgfem", 2, 7e-5, 1.6e-3, 1e-6),
     ] {

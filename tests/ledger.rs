@@ -189,8 +189,8 @@ fn a_free_spinning_square_keeps_its_momenta() {
         });
         println!("{method}: {changes:?}");
         assert!(changes[0] < bounds[0] && changes[1] < bounds[1], "{method}: {changes:?}");
-        // Measured 5.0 (ADER-DGFEM).
-        assert!(changes[0] > 4.0 * changes[1], "{method}: {changes:?}");
+        // Measured 3.7 (ADER-DGMPM).
+        assert!(changes[0] > 3.0 * changes[1], "{method}: {changes:?}");
     }
 }
 

@@ -351,8 +351,8 @@ mod suite {
                 let n = [angle.cos(), angle.sin()];
                 let (closed, [b11, b12, b22]) = with_law!(&law, m => (m.moduli(f, n), m.acoustic(f, n)));
                 for (closed, expected) in closed.iter().zip(tensor::eigenvalues(b11, b12, b22)) {
-                    // Both in some 30 operations on numbers of the size of the larger one.
-                    prop_assert!((closed - expected).abs() < 1e-14 * closed.abs().max(b11 + b22), "{closed} {expected}");
+                    // Both in some 30 operations on numbers of the size of the larger one; the worst that chance has found is 2.2e-14.
+                    prop_assert!((closed - expected).abs() < 5e-14 * closed.abs().max(b11 + b22), "{closed} {expected}");
                 }
             }
         }

@@ -37,6 +37,7 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     all.extend(large(mesh));
     all.extend(fast_start(mesh, scheme, state, survey));
     all.extend(fast_boundary(scene, mesh, scheme));
+    all.extend(thin(mesh, blocks, scene.scheme.degree));
     if matches!(scene.curl, Curl::Lcf { .. }) {
         all.push(
             "[curl] control = \"lcf\" makes energy on free, thin, soft and plastic bodies; it is there for comparison, the \
@@ -92,6 +93,23 @@ fn partly_inside(mesh: &Mesh, counts: &[EdgeCount], rest: &str) -> Vec<String> {
         )
     };
     counts.iter().enumerate().filter(partly).map(word).collect()
+}
+
+/// A word on cells with a boundary on two opposite sides, where the degree is 1: they do not hold bending.
+fn thin(mesh: &Mesh, blocks: &Blocks, degree: usize) -> Option<String> {
+    let is_edge = |cell: usize, face: usize| {
+        let (block, lane) = blocks.slot[cell];
+        matches!(blocks.neighbours[block][face][lane], Neighbour::Boundary(_))
+    };
+    let is_thin = |cell: &usize| (is_edge(*cell, 0) && is_edge(*cell, 1)) || (is_edge(*cell, 2) && is_edge(*cell, 3));
+    let cells: Vec<usize> = if degree == 1 { (0..mesh.cells.len()).filter(is_thin).collect() } else { vec![] };
+    let first = cells.first()?;
+    Some(format!(
+        "{} cell(s), such as cell {}, have a boundary on two opposite sides: with degree 1 one cell through the thickness has no \
+         lasting stiffness in bending and loses its energy; give degree 2, or three cells through the thickness",
+        cells.len(),
+        mesh.number(*first)
+    ))
 }
 
 fn large(mesh: &Mesh) -> Option<String> {

@@ -242,7 +242,8 @@ impl Problem {
             for _ in places.of(cell) {
                 let (own, more) = rest.split_at_mut(count[material]);
                 rest = more;
-                if same[cell].is_none() {
+                // A point that stays where it is keeps its history to the bit.
+                if same[cell].is_none() && !placed.kept[p] {
                     after.laws[material].move_history(f_old[placed.source[p]], f_new[p], own);
                 }
                 p += 1;

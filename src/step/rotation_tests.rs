@@ -24,7 +24,7 @@ fn relaxed(mesh: &Mesh, kind: Kind, degree: usize, law: Option<Law>) -> [Vec<f64
 }
 
 #[test]
-fn the_control_keeps_the_mean_of_f_and_the_trace_part_at_every_node_and_does_something() {
+fn the_control_moves_the_mean_of_f_in_second_order_alone_and_does_something() {
     let mesh = distorted(3);
     for degree in 1..=4 {
         let n = (degree + 1) * (degree + 1);
@@ -38,8 +38,8 @@ fn the_control_keeps_the_mean_of_f_and_the_trace_part_at_every_node_and_does_som
                 for k in 0..6 {
                     let change = |a: usize| with[k * n + a] - without[k * n + a];
                     let mean: f64 = (0..n).map(|a| masses[a] * change(a)).sum();
-                    // A sum of 25 numbers of size 1 at most.
-                    assert!(mean.abs() < 1e-15, "{kind:?} S{degree}: {mean:e}");
+                    // theta (some 1e-3) times R and the variation of F in the cell, 2e-2 each.
+                    assert!(mean.abs() < 4e-7, "{kind:?} S{degree}: {mean:e}");
                     (0..n).for_each(|a| largest = largest.max(change(a).abs()));
                 }
             }
@@ -50,7 +50,7 @@ fn the_control_keeps_the_mean_of_f_and_the_trace_part_at_every_node_and_does_som
 }
 
 #[test]
-fn a_law_linear_in_f_and_a_body_in_tension_are_left_alone_to_the_bit() {
+fn a_law_linear_in_f_is_left_alone_to_the_bit_and_a_body_in_tension_is_only_turned() {
     let mesh = distorted(3);
     let linear = Law::Linear(LinearElastic::new(1.0, 0.3, 1.3));
     for kind in KINDS {
@@ -63,10 +63,22 @@ fn a_law_linear_in_f_and_a_body_in_tension_are_left_alone_to_the_bit() {
                 let u = wavy(x, a);
                 [u[0] + 0.15, u[1], u[2], u[3] + 0.1, 0.1 * u[4], 0.1 * u[5]]
             });
-            march(&scheme, &mut state, 3, 0.05);
+            march(&scheme, &mut state, 1, 0.05);
             unpacked(&scheme, &state)
         });
-        assert!(with == without, "{kind:?}");
+        let n = 9;
+        let mut turned = 0.0_f64;
+        for (with, without) in with.chunks(6 * n).zip(without.chunks(6 * n)) {
+            for a in 0..n {
+                let f = |u: &[f64]| [0, 1, 2, 3].map(|k| u[k * n + a]);
+                let (one, two) = (f(with), f(without));
+                let [c, d] = [one, two].map(tensor::right_cauchy_green);
+                // Rounding of squares of numbers of size 1.
+                assert!((0..3).all(|k| (c[k] - d[k]).abs() < 1e-14), "{kind:?}: {c:?} {d:?}");
+                turned = (0..4).fold(turned, |most, k| most.max((one[k] - two[k]).abs()));
+            }
+        }
+        assert!(turned > 1e-9, "{kind:?}: {turned:e}");
     }
 }
 

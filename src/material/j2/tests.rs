@@ -59,7 +59,8 @@ proptest! {
         law.move_history(from, to, &mut after);
         let [one, two] = [law.response(from, &before), law.response(to, &after)];
         // Nothing yields: the deviator of the elastic strain is the same.
-        prop_assert_eq!(one.internal, before);
+        let change = one.internal.iter().zip(&before).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        prop_assert!(change < 1e-12, "{change:e}");
         prop_assert!((two.internal[PLASTIC_STRAIN] - before[PLASTIC_STRAIN]).abs() < 1e-12);
         if before[PLASTIC_STRAIN] > 0.0 {
             let size = |f, r: &super::super::Response| equivalent(f, r.piola, r.piola33);
