@@ -128,8 +128,8 @@ impl Rotation<'_> {
         }
         let mass = Masses::<'_, M> { line, metric, masses }.run::<L>();
         let (mut total, mut sum) = (L::zero(), [L::zero(); DEFORMATION]);
-        for a in 0..n {
-            let (m, d) = (L::load(&mass[a]), super::dense::gather::<L, DEFORMATION>(gradients, n, a));
+        for (a, mass) in mass.iter().enumerate() {
+            let (m, d) = (L::load(mass), super::dense::gather::<L, DEFORMATION>(gradients, n, a));
             total = total + m;
             for k in 0..DEFORMATION {
                 sum[k] = m.mul_add(d[k], sum[k]);
