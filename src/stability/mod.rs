@@ -1,5 +1,5 @@
 //! How perturbations of a state grow: the linearised step of a patch or a small body, assembled from the program's own
-//! kernels ([`crate::step::Scheme::step`] on perturbed states), its eigenvalues, its energy and its largest step.
+//! kernels (a step of [`crate::step::Scheme`] on perturbed states), its eigenvalues, its energy and its largest step.
 //!
 //! `docs/stability.md` has the formulas and how to read the numbers.
 

@@ -49,13 +49,13 @@ pub struct Made<'a> {
 }
 
 impl Made<'_> {
-    /// The unknowns of a block, [component][node].
+    /// The unknowns of a block, `[component][node]`.
     pub fn unknowns(&self, block: usize) -> &[F8] {
         let stride = self.state.components * self.scheme.operators.nodes();
         &self.state.u[stride * block..stride * (block + 1)]
     }
 
-    /// The internal variables of a block, [point][variable].
+    /// The internal variables of a block, `[point][variable]`.
     pub fn internal(&self, block: usize) -> &[F8] {
         self.scheme.histories.of(&self.state.internal, block)
     }
@@ -65,9 +65,9 @@ impl Made<'_> {
 pub struct Corrected<'a> {
     /// Its number.
     pub number: usize,
-    /// Its unknowns, [component][node].
+    /// Its unknowns, `[component][node]`.
     pub u: &'a mut [F8],
-    /// Its internal variables, [point][variable].
+    /// Its internal variables, `[point][variable]`.
     pub internal: &'a mut [F8],
 }
 
