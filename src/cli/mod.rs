@@ -97,7 +97,7 @@ pub fn main() -> ExitCode {
 /// Runs a parsed command line.
 ///
 /// # Errors
-/// The one message for the user; its exit code is [`Error::exit_code`].
+/// The one message for the user; its exit code is [`crate::Error::exit_code`].
 pub fn run(cli: Cli) -> Result<()> {
     command(cli).and_then(|()| print::all_printed())
 }
