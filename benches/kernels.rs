@@ -5,7 +5,7 @@
 use dgmpm::bench::{Domain, Setup};
 use dgmpm::cloud::{Locator, Pattern, from_points};
 use dgmpm::lane::{F8, Kernel, Lanes, Work, load_array, store_array};
-use dgmpm::material::{Law, LinearElastic, Material, NeoHookean};
+use dgmpm::material::{LinearElastic, Material, NeoHookean, Past, virgin};
 use dgmpm::mesh::map;
 use dgmpm::problem::Problem;
 use dgmpm::riemann::{Acoustic, AcousticCurl, Medium, Riemann, Rusanov, Trace};
@@ -34,7 +34,7 @@ impl<M: Material> Work for Stress<'_, M> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         for (f, out) in self.1.as_chunks::<4>().0.iter().zip(self.2.as_chunks_mut::<4>().0) {
-            store_array(self.0.stress(load_array::<L, 4>(f), &mut []), out);
+            store_array(self.0.stress(load_array::<L, 4>(f), &mut Past::now(virgin::<L, M>())), out);
         }
     }
 }
@@ -45,7 +45,7 @@ impl<M: Material> Work for Speeds<'_, M> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         for (f, out) in self.1.as_chunks::<4>().0.iter().zip(self.2.as_chunks_mut::<4>().0) {
-            store_array(self.0.largest_squares(load_array::<L, 4>(f), &[]), out);
+            store_array(self.0.largest_squares(load_array::<L, 4>(f), &virgin::<L, M>()), out);
         }
     }
 }
@@ -57,7 +57,7 @@ impl<R: Riemann> Work for Fluxes<'_, R> {
     fn run<L: Lanes>(self) {
         let n = [L::splat(0.6), L::splat(0.8)];
         let speeds = [L::splat(5875.0), L::splat(3140.0)];
-        let medium = Medium::new(&Law::NeoHookean(NeoHookean::new(2e11, 0.3, 7800.0)), 2).splat::<L>();
+        let medium = Medium::new(7800.0, 2e11 / 2.6, 2).splat::<L>();
         for (f, out) in self.1.as_chunks::<4>().0.iter().zip(self.2.as_chunks_mut::<6>().0) {
             let f = load_array::<L, 4>(f);
             let minus = Trace { f, v: [f[1], f[2]], t: [f[0], f[3]], c: speeds };

@@ -7,11 +7,12 @@
 use dgmpm::basis::TimeBasis;
 use dgmpm::boundary::{Boundary, Wall};
 use dgmpm::lane::Kernel;
-use dgmpm::material::{Law, NeoHookean};
+use dgmpm::material::NeoHookean;
 use dgmpm::mesh::{links, rectangle};
 use dgmpm::operators::{Needs, Operators, Sampling};
 use dgmpm::riemann::Flux;
 use dgmpm::state::State;
+use dgmpm::step::Law;
 use dgmpm::step::{Control, Histories, Method, Motion, Relax, Scheme, Sweeps, Tableau};
 
 const CELLS: usize = 4;
@@ -68,7 +69,7 @@ fn scheme(method: Method, degree: usize) -> Result<Scheme, Box<dyn std::error::E
     let alpha = if degree >= 4 { 6.0 } else { 3.0 };
     Ok(Scheme {
         operators,
-        laws: vec![Law::NeoHookean(NeoHookean::new(1.0, 0.3, 1.0))],
+        laws: vec![Law::new(NeoHookean::new(1.0, 0.3, 1.0))],
         histories: Histories::default(),
         method,
         flux: Flux::Rusanov,

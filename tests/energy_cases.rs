@@ -56,7 +56,7 @@ fn accounted(outcome: &Outcome, plastic: bool) -> [f64; 2] {
     let ledger = outcome.ledger();
     let mut energy = ledger.column("total_energy");
     if plastic {
-        energy.iter_mut().zip(ledger.column("plastic_dissipation")).for_each(|(e, d)| *e += d);
+        energy.iter_mut().zip(ledger.column("material_dissipation")).for_each(|(e, d)| *e += d);
     }
     [range(&energy)[1] / energy[0], energy.last().unwrap() / energy[0]]
 }

@@ -77,7 +77,7 @@ fn said(output: &Output) -> [String; 2] {
 /// Kinetic and strain energy and plastic work over their start, row by row.
 fn accounted(folder: &TempDir) -> Vec<f64> {
     let ledger = Table::read(&folder.path().join("run/ledger.csv"));
-    let (total, plastic) = (ledger.column("total_energy"), ledger.column("plastic_dissipation"));
+    let (total, plastic) = (ledger.column("total_energy"), ledger.column("material_dissipation"));
     total.iter().zip(&plastic).map(|(e, d)| (e + d) / total[0]).collect()
 }
 

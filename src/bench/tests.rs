@@ -5,7 +5,7 @@ use crate::basis::TimeBasis;
 use crate::chart::{Chart, Line, Marker, Scale, save};
 use crate::lane::counted::{self, Counts, SLOTS};
 use crate::lane::{F8, Kernel, Lanes, Work, load_array};
-use crate::material::{LinearElastic, Material, NeoHookean};
+use crate::material::{LinearElastic, Material, NeoHookean, Past, virgin};
 use crate::scene::Method;
 use crate::step::Phase;
 use crate::step::sweeps::{Sweep, Sweeps};
@@ -27,7 +27,7 @@ impl<M: Material> Work for Stress<M> {
     type Out = ();
     fn run<L: Lanes>(self) {
         let f = load_array::<L, 4>(&[1.1, 0.1, 0.2, 0.9].map(F8::splat));
-        self.0.stress(f, &mut []);
+        self.0.stress(f, &mut Past::now(virgin::<L, M>()));
     }
 }
 

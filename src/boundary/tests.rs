@@ -1,6 +1,6 @@
 //! One suite over every condition, and what each holds alone.
 use super::*;
-use crate::material::{Law, NeoHookean};
+use crate::material::{NeoHookean, PointLaw};
 use crate::riemann::star;
 use crate::tensor;
 
@@ -10,7 +10,7 @@ const AT: FacePoint = FacePoint { x: [0.3, 0.4], normal: N, medium: MEDIUM };
 const NOW: [TimeNode; 1] = [TimeNode { time: 0.0, weight: 1.0 }];
 
 fn trace(f: [f64; 4], v: [f64; 2]) -> Trace<f64> {
-    let law = Law::NeoHookean(NeoHookean::new(1.0, 0.3, 1.3));
+    let law = NeoHookean::new(1.0, 0.3, 1.3);
     Trace { f, v, t: tensor::times(law.stress(f), N), c: law.speeds(f, N) }
 }
 

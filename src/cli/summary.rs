@@ -39,8 +39,8 @@ fn rows(report: &Report) -> Vec<(String, String)> {
         rows.push(row("kinetic energy", format!("{:.6e} -> {:.6e} J/m", first.kinetic, last.kinetic)));
         rows.push(row("strain energy", format!("{:.6e} -> {:.6e} J/m", first.strain, last.strain)));
         rows.push(row("total energy", format!("{:.6} of start and work", report.energy_ratio())));
-        if let Some((first, last)) = first.plastic.zip(last.plastic) {
-            rows.push(row("plastic dissipation", format!("{first:.6e} -> {last:.6e} J/m")));
+        if let Some((first, last)) = first.dissipated.zip(last.dissipated) {
+            rows.push(row("dissipated by laws", format!("{first:.6e} -> {last:.6e} J/m")));
         }
         for (k, axis) in ["1", "2"].iter().enumerate() {
             let change = format!("{:.6e} -> {:.6e} kg/s", first.momentum[k], last.momentum[k]);

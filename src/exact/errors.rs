@@ -1,11 +1,11 @@
 //! The error of a state against an exact solution, by grid quadrature with N + 3 points per direction.
 
 use super::Exact;
-use crate::material::{Internal, Law};
 use crate::mesh::{Mesh, map};
 use crate::observe::Solution;
 use crate::quadrature::gauss_legendre;
 use crate::state::State;
+use crate::step::Law;
 use crate::step::Scheme;
 
 /// Norms of an error e over the body, with |e| the Euclidean norm of its components in the plane.
@@ -70,12 +70,12 @@ pub fn errors(exact: &dyn Exact, mesh: &Mesh, scheme: &Scheme, state: &State, ma
         let found = solution.at(cell, xi);
         let internal = exact.internal(x, state.time).unwrap_or_else(|| solution.law(cell).virgin());
         let expected = (exact.deformation(x, state.time), exact.velocity(x, state.time), internal);
-        [(found.deformation, found.velocity, found.internal), expected]
+        [(found.deformation, found.velocity, found.history), expected]
     })
 }
 
 /// F, v (m/s) and internal variables at a point.
-pub type Values = ([f64; 4], [f64; 2], Internal<f64>);
+pub type Values = ([f64; 4], [f64; 2], Vec<f64>);
 
 /// Errors between two solutions by quadrature with `order` points per direction in the cells of a mesh: `at(cell, xi, X)`
 /// gives what was found and what is expected there, `law` the law of a cell.

@@ -1,7 +1,7 @@
 //! The linear elastic bar: d'Alembert's solution with its reflections.
 
 use super::{Exact, uniaxial_speed};
-use crate::material::Law;
+use crate::step::Law;
 
 /// A bar 0 < X1 < L, a wall at its left end and a free right end, which cannot widen and is released at rest from the
 /// strain e0 = -a exp(-((X1 - X0)/w)^2).

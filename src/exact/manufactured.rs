@@ -2,7 +2,7 @@
 
 use super::{Dual, Exact, acceleration_of_stress};
 use crate::lane::Lane;
-use crate::material::Law;
+use crate::step::Law;
 use std::f64::consts::TAU;
 
 /// u1 = a/k sin(k X1) cos(k X2 + .4) g(t), u2 = a/k cos(k X1 + .7) sin(k X2) g(t), g = cos(w t + .3), with k = 2 pi / L and

@@ -2,7 +2,6 @@
 //!
 //! A new solution is one file with a type that implements [`Exact`] and its entry in the scene's registry.
 
-mod dual;
 mod errors;
 mod linear_bar;
 mod manufactured;
@@ -12,7 +11,7 @@ mod simple_wave;
 mod vortex;
 mod wall_impact;
 
-pub use dual::Dual;
+pub use crate::lane::Dual;
 pub use errors::{Errors, Norms, Values, compare, errors};
 pub use linear_bar::LinearBar;
 pub use manufactured::Manufactured;
@@ -22,9 +21,8 @@ pub use simple_wave::SimpleWave;
 pub use vortex::Vortex;
 pub use wall_impact::WallImpact;
 
-use crate::material::{Internal, Law, Material, virgin};
 use crate::source::Source;
-use crate::with_law;
+use crate::step::Law;
 use std::sync::Arc;
 
 /// A solution of (1), (2) in reference coordinates X (m) and time t (s).
@@ -36,7 +34,7 @@ pub trait Exact: Send + Sync {
     fn velocity(&self, x: [f64; 2], t: f64) -> [f64; 2];
 
     /// Internal variables, of a solution for a law with memory.
-    fn internal(&self, _x: [f64; 2], _t: f64) -> Option<Internal<f64>> {
+    fn internal(&self, _x: [f64; 2], _t: f64) -> Option<Vec<f64>> {
         None
     }
 
@@ -67,7 +65,7 @@ impl Source for ExactForce {
 
 /// Div P / rho0, m/s^2, where `slopes[a]` is F and its derivative along X_a: through the code of the law itself.
 fn acceleration_of_stress(law: &Law, slopes: [[Dual; 4]; 2]) -> [f64; 2] {
-    let [along1, along2] = slopes.map(|f| with_law!(law, law => law.stress(f, &mut virgin::<Dual, _>(law))));
+    let [along1, along2] = slopes.map(|f| law.stress_and_slope(f));
     [0, 1].map(|i| (along1[2 * i].slope + along2[2 * i + 1].slope) / law.density())
 }
 

@@ -1,8 +1,8 @@
 //! The Riemann problem of two states and two materials: exact, by the p-system of uniaxial strain.
 
 use super::{Exact, bisect, speed_integral, uniaxial_speed};
-use crate::material::Law;
 use crate::quadrature::gauss_legendre;
+use crate::step::Law;
 
 /// Two uniform states (F11, v1) of two materials that meet at X1 = X0, from t = 0 on as one body that cannot widen.
 ///
@@ -190,15 +190,15 @@ mod tests {
     use crate::material::{LinearElastic, NeoHookean};
 
     fn steel() -> Law {
-        Law::NeoHookean(NeoHookean::new(2e11, 0.3, 7800.0))
+        Law::new(NeoHookean::new(2e11, 0.3, 7800.0))
     }
 
     fn aluminium() -> Law {
-        Law::NeoHookean(NeoHookean::new(7e10, 0.33, 2700.0))
+        Law::new(NeoHookean::new(7e10, 0.33, 2700.0))
     }
 
     fn linear() -> Law {
-        Law::Linear(LinearElastic::new(7e10, 0.33, 2700.0))
+        Law::new(LinearElastic::new(7e10, 0.33, 2700.0))
     }
 
     /// Laws, states, and which of the two waves are shocks.
@@ -265,7 +265,8 @@ mod tests {
             // Rounding of the bisection for F11, times the modulus of 2.7e11 Pa.
             assert!((p11(&laws[0], f) - p11(&laws[1], g)).abs() < 1e-3, "{states:?}");
             assert!((p11(&laws[0], f) - problem.star_traction()).abs() < 1e-3);
-            assert_eq!(laws[0] == laws[1], (f[0] - g[0]).abs() < 1e-12, "{f:?} {g:?}");
+            let same = format!("{:?}", laws[0]) == format!("{:?}", laws[1]);
+            assert_eq!(same, (f[0] - g[0]).abs() < 1e-12, "{f:?} {g:?}");
         }
     }
 
@@ -285,7 +286,7 @@ mod tests {
 
     #[test]
     fn linear_materials_share_momentum_by_their_impedances() {
-        let (a, b) = (linear(), Law::Linear(LinearElastic::new(2e11, 0.3, 7800.0)));
+        let (a, b) = (linear(), Law::new(LinearElastic::new(2e11, 0.3, 7800.0)));
         let problem = Riemann::new(&[a.clone(), b.clone()], [[1.0, 10.0], [1.0, -4.0]], 0.0).unwrap();
         let [za, zb] = [&a, &b].map(|law| law.density() * uniaxial_speed(law, 1.0));
         assert!((problem.star_velocity() - (10.0 * za - 4.0 * zb) / (za + zb)).abs() < 1e-10);

@@ -1,8 +1,8 @@
 //! The nonlinear simple wave: exact and smooth until it breaks.
 
 use super::{Exact, bisect, speed_integral, uniaxial_speed};
-use crate::material::Law;
 use crate::quadrature::gauss_legendre;
+use crate::step::Law;
 
 /// A right-going uniaxial wave: F11(X, t) = F0(xi) on the characteristic X = xi + c(F0(xi)) t,
 /// F0 = 1 - a exp(-((X - X0)/w)^2), v1 = -int_1^F11 c dF, c^2 = (dP11/dF11) / rho0.

@@ -2,7 +2,7 @@
 
 use super::{Dual, Exact, acceleration_of_stress};
 use crate::lane::Lane;
-use crate::material::Law;
+use crate::step::Law;
 use crate::tensor;
 use std::f64::consts::PI;
 

@@ -1,7 +1,7 @@
 //! Uniaxial impact on a wall: the exact shock.
 
 use super::{Exact, bisect};
-use crate::material::Law;
+use crate::step::Law;
 
 /// A body in X1 > 0 that flies at v1 = -V against a wall at X1 = 0, and cannot widen.
 ///

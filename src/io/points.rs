@@ -253,12 +253,11 @@ mod tests {
         let fields = vec![
             Field::new("deformation", Kind::Tensor, vec![1.1, 0.2, 0.0, 0.3, 0.9, 0.0, 0.0, 0.0, 1.0]),
             Field::new("velocity", Kind::Vector, vec![1.0 / 3.0, -2e5, 0.0]),
-            Field::new("plastic_strain", Kind::Scalar, vec![0.125]),
+            Field::new("damage", Kind::Scalar, vec![0.125]),
         ];
         write_points(&vtu, &PointCloud { points: vec![[0.5, 0.25, 0.0]], fields: fields.clone() }).unwrap();
         assert_eq!(read_with_fields(&vtu).unwrap(), (vec![[0.5, 0.25]], fields.clone()));
-        let names =
-            "x,y,deformation_11,velocity_1,deformation_12,deformation_21,deformation_22,velocity_2,plastic_strain";
+        let names = "x,y,deformation_11,velocity_1,deformation_12,deformation_21,deformation_22,velocity_2,damage";
         std::fs::write(&csv, format!("{names}\n0.5,0.25,1.1,{},0.2,0.3,0.9,-2e5,0.125\n", 1.0 / 3.0)).unwrap();
         assert_eq!(read_with_fields(&csv).unwrap(), (vec![[0.5, 0.25]], fields));
         std::fs::write(&csv, "x,y,velocity_1\n0.5,0.25\n").unwrap();

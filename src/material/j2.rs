@@ -1,6 +1,6 @@
 //! Elastoplastic solid at finite strain: J2 yield with linear isotropic hardening, logarithmic elastic strain.
 
-use super::Material;
+use super::{Material, Past, Rank, Variable, virgin};
 use crate::lane::{Lane, functions};
 use crate::tensor;
 
@@ -63,7 +63,7 @@ impl J2 {
     /// Trial state and radial return: f = 2 mu |d| - sqrt(2/3)(sigma_y + H p); where f > 0, with
     /// dg = f/(2 mu + 2H/3), d -= dg d/|d| and p += sqrt(2/3) dg.
     #[inline(always)]
-    fn step<L: Lane>(&self, f: [L; 4], internal: &[L]) -> Step<L> {
+    fn step<L: Lane>(&self, f: [L; 4], internal: &[L; 5]) -> Step<L> {
         let (one, half) = (L::splat(1.0), L::splat(0.5));
         let (c11, c22, c12, c33) = (internal[0], internal[1], internal[2], internal[3]);
         let j = tensor::det(f);
@@ -92,7 +92,7 @@ impl J2 {
     /// b_e = s (cosh w 1 + sinh w (b - m 1)/r) with the trial's b, m, r: Cp^-1 = s ((cosh w - k m) C^-1 + k Cp^-1_n), k = sinh w / r,
     /// s = J^(2/3) exp(2 mean): det b_e = J^2 anew at each step, so that det Cp = 1 does not drift.
     #[inline(always)]
-    fn update<L: Lane>(f: [L; 4], step: &Step<L>, internal: &mut [L]) {
+    fn update<L: Lane>(f: [L; 4], step: &Step<L>, internal: &mut [L; 5]) {
         let (one, half) = (L::splat(1.0), L::splat(0.5));
         let w = step.factor * step.square.sqrt();
         let (up, spread) = (functions::exp(w), functions::exp(L::splat(2.0) * step.factor * step.mean));
@@ -128,14 +128,21 @@ impl J2 {
 }
 
 impl Material for J2 {
-    const INTERNAL: &'static [&'static str] = &[
-        "inverse_plastic_metric_11",
-        "inverse_plastic_metric_22",
-        "inverse_plastic_metric_12",
-        "inverse_plastic_metric_33",
-        "plastic_strain",
+    const HISTORY: &'static [Variable] = &[
+        Variable {
+            name: "inverse_plastic_metric",
+            about: "Cp^-1, the inverse of the plastic right Cauchy-Green tensor",
+            rank: Rank::SymmetricTensor,
+            numbers: &[("_11", 1.0), ("_22", 1.0), ("_12", 0.0), ("_33", 1.0)],
+        },
+        Variable {
+            name: "plastic_strain",
+            about: "cumulated plastic strain p",
+            rank: Rank::Scalar,
+            numbers: &[("", 0.0)],
+        },
     ];
-    const VIRGIN: &'static [f64] = &[1.0, 1.0, 0.0, 1.0, 0.0];
+    type History<L: Lane> = [L; 5];
 
     fn density(&self) -> f64 {
         self.density
@@ -147,8 +154,8 @@ impl Material for J2 {
 
     /// P = A F Cp^-1 + B cof F, A = mu w/r, B = kappa (J - 1) + (2 mu `mean` - A m)/J.
     #[inline(always)]
-    fn stress<L: Lane>(&self, f: [L; 4], internal: &mut [L]) -> [L; 4] {
-        let step = self.step(f, internal);
+    fn stress<L: Lane>(&self, f: [L; 4], past: &mut Past<[L; 5]>) -> [L; 4] {
+        let step = self.step(f, &past.history);
         let (g, u) = (tensor::cofactor(f), step.product);
         let a = L::splat(self.mu) * step.factor * step.ratio;
         let deviator = (L::splat(2.0 * self.mu) * step.factor).mul_add(step.mean, -(a * step.centre));
@@ -159,23 +166,23 @@ impl Material for J2 {
             a.mul_add(u[2], b * g[2]),
             a.mul_add(u[3], b * g[3]),
         ];
-        Self::update(f, &step, internal);
+        Self::update(f, &step, &mut past.history);
         p
     }
 
     /// P33 = tau33 = kappa J (J - 1) + 2 mu (dev e)_33.
     #[inline(always)]
-    fn stress33<L: Lane>(&self, f: [L; 4], internal: &[L]) -> L {
-        let step = self.step(f, internal);
+    fn stress33<L: Lane>(&self, f: [L; 4], past: &Past<[L; 5]>) -> L {
+        let step = self.step(f, &past.history);
         let pressure = step.j * (step.j - L::splat(1.0)) * L::splat(self.kappa);
         (L::splat(-4.0 * self.mu) * step.factor).mul_add(step.mean, pressure)
     }
 
     #[inline(always)]
-    fn energy<L: Lane>(&self, f: [L; 4], internal: &[L]) -> L {
-        let step = self.step(f, internal);
+    fn energy<L: Lane>(&self, f: [L; 4], past: &Past<[L; 5]>) -> L {
+        let step = self.step(f, &past.history);
         let (change, size) = (step.j - L::splat(1.0), step.factor * step.size);
-        let p = internal[PLASTIC_STRAIN] + step.flow;
+        let p = past.history[PLASTIC_STRAIN] + step.flow;
         let hardening = L::splat(0.5 * self.hardening) * p * p;
         let deviator = (L::splat(self.mu) * size).mul_add(size, hardening);
         (L::splat(0.5 * self.kappa) * change).mul_add(change, deviator)
@@ -183,14 +190,14 @@ impl Material for J2 {
 
     /// sigma_y p.
     #[inline(always)]
-    fn dissipated<L: Lane>(&self, f: [L; 4], internal: &[L]) -> L {
-        L::splat(self.yield_stress) * (internal[PLASTIC_STRAIN] + self.step(f, internal).flow)
+    fn dissipated<L: Lane>(&self, f: [L; 4], past: &Past<[L; 5]>) -> L {
+        L::splat(self.yield_stress) * (past.history[PLASTIC_STRAIN] + self.step(f, &past.history).flow)
     }
 
     /// Cp^-1 <- (J_to/J_from)^(2/3) F_to^-1 b_e F_to^-T: b_e without its volume, and the yield function, stay; that of material
     /// which has never yielded is left as it is.
     #[inline(always)]
-    fn move_history<L: Lane>(&self, from: [L; 4], to: [L; 4], internal: &mut [L]) {
+    fn move_history<L: Lane>(&self, from: [L; 4], to: [L; 4], internal: &mut [L; 5]) {
         let (c11, c22, c12, c33) = (internal[0], internal[1], internal[2], internal[3]);
         let product = tensor::times_transposed(from, [c11, c12, c12, c22]);
         let b = tensor::times_transposed(product, from);
@@ -215,11 +222,7 @@ impl Material for J2 {
     /// B = kappa g g^T + mu (n.n (1 - D) - G (n.D n) D + (1/3 + w^2 G - 2 `mean`) n n^T), G = (w coth w - 1)/w^2.
     #[inline(always)]
     fn acoustic<L: Lane>(&self, f: [L; 4], n: [L; 2]) -> [L; 3] {
-        let mut virgin = [L::zero(); 5];
-        for (out, value) in virgin.iter_mut().zip(Self::VIRGIN) {
-            *out = L::splat(*value);
-        }
-        let step = self.step(f, &virgin);
+        let step = self.step(f, &virgin::<L, Self>());
         let g = tensor::times(tensor::cofactor(f), n);
         let n = [g[0] * step.inverse, g[1] * step.inverse];
         let scale = step.factor * step.ratio;
@@ -242,7 +245,7 @@ impl Material for J2 {
     /// rho0 c_s^2 = mu (w coth w - w), both times the largest |F^-T N|^2: where b_e and F F^T have the same axes (always in
     /// virgin material) the speeds along the smallest stretch, else an upper bound of those of all directions.
     #[inline(always)]
-    fn largest_squares<L: Lane>(&self, f: [L; 4], internal: &[L]) -> [L; 2] {
+    fn largest_squares<L: Lane>(&self, f: [L; 4], internal: &[L; 5]) -> [L; 2] {
         let step = self.step(f, internal);
         let [c11, c12, c22] = tensor::right_cauchy_green(f);
         let normal2 = tensor::eigenvalues(c11, c12, c22)[0] * (step.inverse * step.inverse);

@@ -1,6 +1,6 @@
 //! Linear elastic solid: Hooke's law in the small strain, with the full gradient in its symmetric part.
 
-use super::Material;
+use super::{Material, Past};
 use crate::lane::Lane;
 
 /// W = lambda/2 (tr eps)^2 + mu eps:eps, eps = (F + F^T)/2 - 1, eps33 = 0.
@@ -28,8 +28,8 @@ impl LinearElastic {
 }
 
 impl Material for LinearElastic {
-    const INTERNAL: &'static [&'static str] = &[];
-    const GEOMETRIC: bool = false;
+    type History<L: Lane> = [L; 0];
+    const OBJECTIVE: bool = false;
 
     fn density(&self) -> f64 {
         self.density
@@ -41,7 +41,7 @@ impl Material for LinearElastic {
 
     /// P = lambda (tr eps) 1 + 2 mu eps.
     #[inline(always)]
-    fn stress<L: Lane>(&self, f: [L; 4], _: &mut [L]) -> [L; 4] {
+    fn stress<L: Lane>(&self, f: [L; 4], _: &mut Past<[L; 0]>) -> [L; 4] {
         let pressure = L::splat(self.lambda) * Self::trace(f);
         let (one, twice) = (L::splat(1.0), L::splat(2.0 * self.mu));
         let shear = L::splat(self.mu) * (f[1] + f[2]);
@@ -50,12 +50,12 @@ impl Material for LinearElastic {
 
     /// P33 = lambda tr eps.
     #[inline(always)]
-    fn stress33<L: Lane>(&self, f: [L; 4], _: &[L]) -> L {
+    fn stress33<L: Lane>(&self, f: [L; 4], _: &Past<[L; 0]>) -> L {
         L::splat(self.lambda) * Self::trace(f)
     }
 
     #[inline(always)]
-    fn energy<L: Lane>(&self, f: [L; 4], _: &[L]) -> L {
+    fn energy<L: Lane>(&self, f: [L; 4], _: &Past<[L; 0]>) -> L {
         let one = L::splat(1.0);
         let (trace, e11, e22, twice_e12) = (Self::trace(f), f[0] - one, f[3] - one, f[1] + f[2]);
         let squares = e11.mul_add(e11, e22 * e22) + L::splat(0.5) * twice_e12 * twice_e12;

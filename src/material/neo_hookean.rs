@@ -1,6 +1,6 @@
 //! Compressible neo-Hookean solid, (4)-(9) of the paper with (9) read as dW/dF.
 
-use super::Material;
+use super::{Material, Past};
 use crate::lane::Lane;
 use crate::tensor;
 
@@ -55,7 +55,7 @@ impl NeoHookean {
 }
 
 impl Material for NeoHookean {
-    const INTERNAL: &'static [&'static str] = &[];
+    type History<L: Lane> = [L; 0];
 
     fn density(&self) -> f64 {
         self.density
@@ -67,7 +67,7 @@ impl Material for NeoHookean {
 
     /// P = A F + B cof F, A = mu J^(-2/3), B = kappa (J - 1) - A I / (3 J).
     #[inline(always)]
-    fn stress<L: Lane>(&self, f: [L; 4], _: &mut [L]) -> [L; 4] {
+    fn stress<L: Lane>(&self, f: [L; 4], _: &mut Past<[L; 0]>) -> [L; 4] {
         let Terms { a, b, .. } = self.terms(f);
         let g = tensor::cofactor(f);
         [a.mul_add(f[0], b * g[0]), a.mul_add(f[1], b * g[1]), a.mul_add(f[2], b * g[2]), a.mul_add(f[3], b * g[3])]
@@ -75,13 +75,13 @@ impl Material for NeoHookean {
 
     /// P33 = A + B J.
     #[inline(always)]
-    fn stress33<L: Lane>(&self, f: [L; 4], _: &[L]) -> L {
+    fn stress33<L: Lane>(&self, f: [L; 4], _: &Past<[L; 0]>) -> L {
         let Terms { j, a, b, .. } = self.terms(f);
         b.mul_add(j, a)
     }
 
     #[inline(always)]
-    fn energy<L: Lane>(&self, f: [L; 4], _: &[L]) -> L {
+    fn energy<L: Lane>(&self, f: [L; 4], _: &Past<[L; 0]>) -> L {
         let Terms { j, invariant, a, .. } = self.terms(f);
         let (half, change) = (L::splat(0.5), j - L::splat(1.0));
         half * (change * change * L::splat(self.kappa) + (a * invariant - L::splat(3.0 * self.mu)))
@@ -129,7 +129,7 @@ impl Material for NeoHookean {
     /// Along a principal direction of stretch l1, the other being l2, f and g are parallel, f.g = J and g.g = l2^2: B has
     /// the eigenvalues (kappa + 5 A I/(9 J^2)) l2^2 - A/3 and A. The fastest is that of the larger l2.
     #[inline(always)]
-    fn largest_squares<L: Lane>(&self, f: [L; 4], _: &[L]) -> [L; 2] {
+    fn largest_squares<L: Lane>(&self, f: [L; 4], _: &[L; 0]) -> [L; 2] {
         let terms = self.terms(f);
         let [c11, c12, c22] = tensor::right_cauchy_green(f);
         let stretch2 = tensor::eigenvalues(c11, c12, c22)[0];

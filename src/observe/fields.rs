@@ -2,63 +2,85 @@
 
 use super::Point;
 use crate::io::grid::Kind;
-use crate::material::{Law, cauchy};
+use crate::material::{Rank, Variable, cauchy};
+use crate::step::Law;
 use crate::tensor;
 
-names! {
-    /// A field that outputs can name.
-    Field {
-        /// v, m/s.
-        Velocity = "velocity",
-        /// u = x - X, m.
-        Displacement = "displacement",
-        /// F.
-        Deformation = "deformation",
-        /// First Piola-Kirchhoff stress P, Pa.
-        Piola = "piola",
-        /// sigma = P F^T / J, Pa.
-        CauchyStress = "cauchy_stress",
-        /// J = det F.
-        Jacobian = "jacobian",
-        /// Von Mises equivalent of sigma (with sigma33), Pa.
-        VonMises = "von_mises",
-        /// Cumulated plastic strain p.
-        PlasticStrain = "plastic_strain",
-        /// Cp^-1.
-        InversePlasticMetric = "inverse_plastic_metric",
+/// A field that outputs can name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Field {
+    /// v, m/s.
+    Velocity,
+    /// u = x - X, m.
+    Displacement,
+    /// F.
+    Deformation,
+    /// First Piola-Kirchhoff stress P, Pa.
+    Piola,
+    /// sigma = P F^T / J, Pa.
+    CauchyStress,
+    /// J = det F.
+    Jacobian,
+    /// Von Mises equivalent of sigma (with sigma33), Pa.
+    VonMises,
+    /// A variable of the history of a law.
+    History(&'static Variable),
+}
+
+impl serde::Serialize for Field {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
     }
 }
 
 impl Field {
-    /// The field with this name.
-    pub fn of(name: &str) -> Option<Field> {
-        Self::NAMES.iter().find(|(known, _)| *known == name).map(|(_, field)| *field)
+    /// The fields of every body.
+    pub const OF_ALL: [Field; 7] = [
+        Field::Velocity,
+        Field::Displacement,
+        Field::Deformation,
+        Field::Piola,
+        Field::CauchyStress,
+        Field::Jacobian,
+        Field::VonMises,
+    ];
+
+    /// The fields of a body of these laws: those of every body, and the variables of histories.
+    pub fn of_laws(laws: &[Law]) -> Vec<Field> {
+        let mut out = Self::OF_ALL.to_vec();
+        for variable in laws.iter().flat_map(|law| law.variables()) {
+            if !out.contains(&Field::History(variable)) {
+                out.push(Field::History(variable));
+            }
+        }
+        out
     }
 
-    /// The internal variables that the field shows, each with the value for laws that do not have it. Empty for other
-    /// fields.
-    fn variables(self) -> &'static [(&'static str, f64)] {
+    /// Its name in scenes and results.
+    pub fn name(self) -> &'static str {
         match self {
-            Field::PlasticStrain => &[("plastic_strain", 0.0)],
-            Field::InversePlasticMetric => &[
-                ("inverse_plastic_metric_11", 1.0),
-                ("inverse_plastic_metric_12", 0.0),
-                ("inverse_plastic_metric_22", 1.0),
-                ("inverse_plastic_metric_33", 1.0),
-            ],
-            _ => &[],
+            Field::Velocity => "velocity",
+            Field::Displacement => "displacement",
+            Field::Deformation => "deformation",
+            Field::Piola => "piola",
+            Field::CauchyStress => "cauchy_stress",
+            Field::Jacobian => "jacobian",
+            Field::VonMises => "von_mises",
+            Field::History(variable) => variable.name,
         }
     }
 
-    /// Whether the field shows internal variables.
-    pub fn is_internal(self) -> bool {
-        !self.variables().is_empty()
+    /// Whether the field is a variable of a history.
+    pub fn is_history(self) -> bool {
+        matches!(self, Field::History(_))
     }
 
-    /// Whether a body of these laws has the field: internal variables need a law that has them.
+    /// Whether a body of these laws has the field: a variable needs a law that has it.
     pub fn is_of(self, laws: &[Law]) -> bool {
-        let has = |name: &str| laws.iter().any(|law| law.internal().contains(&name));
-        self.variables().iter().all(|(name, _)| has(name))
+        match self {
+            Field::History(variable) => laws.iter().any(|law| law.variables().contains(variable)),
+            _ => true,
+        }
     }
 
     /// Suffixes of its components.
@@ -67,8 +89,12 @@ impl Field {
             Field::Velocity | Field::Displacement => &["_1", "_2"],
             Field::Deformation => &["_11", "_12", "_21", "_22"],
             Field::Piola => &["_11", "_12", "_21", "_22", "_33"],
-            Field::CauchyStress | Field::InversePlasticMetric => &["_11", "_12", "_22", "_33"],
-            Field::Jacobian | Field::VonMises | Field::PlasticStrain => &[""],
+            Field::CauchyStress => SYMMETRIC,
+            Field::Jacobian | Field::VonMises => &[""],
+            Field::History(variable) => match variable.rank {
+                Rank::Scalar => &[""],
+                Rank::SymmetricTensor => SYMMETRIC,
+            },
         }
     }
 
@@ -79,10 +105,10 @@ impl Field {
 
     /// Whether an export writes the field as a scalar, vector or tensor.
     pub fn kind(self) -> Kind {
-        match self {
-            Field::Velocity | Field::Displacement => Kind::Vector,
-            Field::Deformation | Field::Piola | Field::CauchyStress | Field::InversePlasticMetric => Kind::Tensor,
-            Field::Jacobian | Field::VonMises | Field::PlasticStrain => Kind::Scalar,
+        match self.suffixes().len() {
+            1 => Kind::Scalar,
+            2 => Kind::Vector,
+            _ => Kind::Tensor,
         }
     }
 
@@ -91,11 +117,9 @@ impl Field {
         let mut plane = Vec::with_capacity(5);
         self.push(law, at, &mut plane);
         match (self, &plane[..]) {
-            (Field::CauchyStress | Field::InversePlasticMetric, &[s11, s12, s22, s33]) => {
-                out.extend(spatial([s11, s12, s12, s22], s33))
-            }
             (Field::Piola, &[p11, p12, p21, p22, p33]) => out.extend(spatial([p11, p12, p21, p22], p33)),
             (Field::Deformation, &[f11, f12, f21, f22]) => out.extend(spatial([f11, f12, f21, f22], 1.0)),
+            (_, &[s11, s12, s22, s33]) => out.extend(spatial([s11, s12, s12, s22], s33)),
             (Field::Velocity | Field::Displacement, &[x, y]) => out.extend([x, y, 0.0]),
             (_, values) => out.extend_from_slice(values),
         }
@@ -115,13 +139,22 @@ impl Field {
             Field::CauchyStress => out.extend(stress(law, at)),
             Field::Jacobian => out.push(tensor::det(at.deformation)),
             Field::VonMises => out.push(von_mises(stress(law, at))),
-            Field::PlasticStrain | Field::InversePlasticMetric => {
-                let position = |name: &str| law.internal().iter().position(|known| *known == name);
-                let value = |&(name, other): &(&str, f64)| position(name).map_or(other, |k| at.internal[k]);
-                out.extend(self.variables().iter().map(value));
+            Field::History(variable) => {
+                let kept = law.place_of(variable.name).and_then(|place| at.history.get(place));
+                out.extend(self.suffixes().iter().map(|suffix| number_of(variable, suffix, kept)));
             }
         }
     }
+}
+
+/// Suffixes of a symmetric tensor.
+const SYMMETRIC: &[&str] = &["_11", "_12", "_22", "_33"];
+
+/// The number of a variable with this suffix among those that are kept; that of virgin material, for laws that do not have it.
+fn number_of(variable: &Variable, suffix: &str, kept: Option<&[f64]>) -> f64 {
+    let place = variable.numbers.iter().position(|(known, _)| *known == suffix);
+    let virgin = place.map_or(0.0, |place| variable.numbers[place].1);
+    kept.zip(place).map_or(virgin, |(kept, place)| kept[place])
 }
 
 /// A tensor row by row, with the third direction of plane strain.
@@ -144,6 +177,7 @@ fn von_mises(s: [f64; 4]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::{J2, NeoHookean};
 
     #[test]
     fn von_mises_of_uniaxial_stress_and_of_pressure() {
@@ -155,30 +189,33 @@ mod tests {
 
     #[test]
     fn every_field_has_its_name_back_and_as_many_components_as_values() {
-        let elastic = Law::NeoHookean(crate::material::NeoHookean::new(1.0, 0.3, 1.0));
-        let plastic = Law::J2(crate::material::J2::new(1.0, 0.3, 1.0, 0.01, 0.1));
-        let (deformation, internal) = ([1.1, 0.1, 0.0, 0.9], [1.1, 0.8, 0.1, 1.2, 0.3]);
-        let at = Point { deformation, velocity: [1.0, 2.0], displacement: [0.0; 2], internal };
-        for (&(name, field), law) in Field::NAMES.iter().flat_map(|pair| [(pair, &elastic), (pair, &plastic)]) {
-            assert_eq!(Field::of(name), Some(field));
-            let mut values = Vec::new();
-            field.push(law, &at, &mut values);
-            assert_eq!(values.len(), field.components().count(), "{name}");
-            let mut spatial = Vec::new();
-            field.push_spatial(law, &at, &mut spatial);
-            assert_eq!(spatial.len(), field.kind().components(), "{name}");
-        }
+        let elastic = Law::new(NeoHookean::new(1.0, 0.3, 1.0));
+        let with_history = Law::new(J2::new(1.0, 0.3, 1.0, 0.01, 0.1));
+        let fields = Field::of_laws(&[elastic.clone(), with_history.clone()]);
+        let (deformation, history) = ([1.1, 0.1, 0.0, 0.9], vec![1.1, 0.8, 0.1, 1.2, 0.3]);
+        let at = Point { deformation, velocity: [1.0, 2.0], displacement: [0.0; 2], history };
         let of = |law: &Law, field: Field| {
             let mut values = Vec::new();
             field.push(law, &at, &mut values);
             values
         };
-        assert_eq!(of(&plastic, Field::InversePlasticMetric), [1.1, 0.1, 0.8, 1.2]);
-        assert_eq!([of(&plastic, Field::PlasticStrain), of(&elastic, Field::PlasticStrain)], [[0.3], [0.0]]);
-        assert_eq!(of(&elastic, Field::InversePlasticMetric), [1.0, 0.0, 1.0, 1.0]);
+        for (field, law) in fields.iter().flat_map(|field| [(*field, &elastic), (*field, &with_history)]) {
+            let name = field.name();
+            assert_eq!(fields.iter().filter(|other| other.name() == name).count(), 1);
+            assert_eq!(of(law, field).len(), field.components().count(), "{name}");
+            let mut spatial = Vec::new();
+            field.push_spatial(law, &at, &mut spatial);
+            assert_eq!(spatial.len(), field.kind().components(), "{name}");
+        }
+        let variables: Vec<Field> = fields.into_iter().filter(|field| field.is_history()).collect();
+        let all = |law: &Law| variables.iter().map(|field| of(law, *field)).collect::<Vec<_>>();
+        assert_eq!(all(&with_history), [vec![1.1, 0.1, 0.8, 1.2], vec![0.3]]);
+        assert_eq!(all(&elastic), [vec![1.0, 0.0, 1.0, 1.0], vec![0.0]]);
+        let of_elastic = Field::of_laws(std::slice::from_ref(&elastic));
         assert!(
-            !Field::PlasticStrain.is_of(std::slice::from_ref(&elastic))
-                && Field::PlasticStrain.is_of(&[elastic, plastic])
+            of_elastic == Field::OF_ALL
+                && variables.iter().all(|field| field.is_of(&[elastic.clone(), with_history.clone()]))
         );
+        assert!(!variables[0].is_of(&[elastic]));
     }
 }

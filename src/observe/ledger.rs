@@ -23,8 +23,8 @@ const COLUMNS: [&str; 11] = [
 /// The next column, if the displacement is known: the difference between F and the shape, [`Totals::max_drift`].
 const DRIFT: &str = "max_drift";
 
-/// The next column, if a law has memory: the energy that plastic flow has dissipated since the material was virgin.
-const PLASTIC: &str = "plastic_dissipation";
+/// The next column, if a law has memory: the energy that laws have dissipated since their material was virgin.
+const DISSIPATED: &str = "material_dissipation";
 
 /// The last column, if the scene changes its grid: the energy that these changes have lost since the start of the run.
 const REGRIDS: &str = "regrid_dissipation";
@@ -45,8 +45,8 @@ const BALANCE: [&str; 7] = [
 pub struct Contents {
     /// The difference between F and the shape.
     pub drift: bool,
-    /// The energy that plastic flow has dissipated.
-    pub plastic: bool,
+    /// The energy that laws have dissipated.
+    pub dissipated: bool,
     /// The columns of [`Balance`].
     pub balance: bool,
     /// With the balance: the energy that changes of grid have lost.
@@ -66,10 +66,10 @@ impl Ledger {
     /// # Errors
     /// The file cannot be created.
     pub fn create(path: &Path, schedule: Schedule, contents: Contents) -> Result<Self, Error> {
-        let Contents { drift, plastic, balance, regrids } = contents;
+        let Contents { drift, dissipated, balance, regrids } = contents;
         let mut columns = COLUMNS.to_vec();
         columns.extend(drift.then_some(DRIFT));
-        columns.extend(plastic.then_some(PLASTIC));
+        columns.extend(dissipated.then_some(DISSIPATED));
         columns.extend(BALANCE.iter().filter(|_| balance));
         columns.extend((balance && regrids).then_some(REGRIDS));
         Ok(Self { schedule, contents, table: Table::create(path, &columns)? })
@@ -114,7 +114,7 @@ impl Observer for Ledger {
             view.survey.fastest,
         ];
         row.extend(self.contents.drift.then(|| totals.max_drift.unwrap_or(f64::NAN)));
-        row.extend(self.contents.plastic.then(|| totals.plastic.unwrap_or(0.0)));
+        row.extend(self.contents.dissipated.then(|| totals.dissipated.unwrap_or(0.0)));
         if let Some(balance) = view.balance.filter(|_| self.contents.balance) {
             row.extend(columns(balance, &totals));
             row.extend(self.contents.regrids.then_some(balance.regrid_dissipation));

@@ -4,12 +4,13 @@
 use crate::basis::Lagrange;
 use crate::cloud::Cloud;
 use crate::io::snapshot::Snapshot;
-use crate::material::{Internal, Law, Response};
+use crate::material::Response;
 use crate::state::{State, UNKNOWNS};
+use crate::step::Law;
 use crate::step::{Scheme, history};
 
 /// The unknowns at a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     /// F.
     pub deformation: [f64; 4],
@@ -18,13 +19,13 @@ pub struct Point {
     /// u, m; zero where it is not integrated.
     pub displacement: [f64; 2],
     /// Internal variables of the nearest point of the cell.
-    pub internal: Internal<f64>,
+    pub history: Vec<f64>,
 }
 
 impl Point {
     /// The response of a law at this point, from these internal variables.
     pub fn response(&self, law: &Law) -> Response {
-        law.response(self.deformation, &self.internal)
+        law.response(self.deformation, &self.history)
     }
 }
 
@@ -43,20 +44,20 @@ impl Memory {
     /// The internal variables of cells with these laws; `None` if no law has memory. Points for which `values` is too
     /// short are virgin.
     fn new(laws: &[Law], material: &[usize], places: impl FnOnce() -> Cloud, values: Vec<f64>) -> Option<Self> {
-        if laws.iter().all(|law| law.internal().is_empty()) {
+        if !laws.iter().any(|law| law.has_memory()) {
             return None;
         }
         let (places, mut first, mut next) = (places(), Vec::with_capacity(material.len()), 0);
         for (cell, &law) in material.iter().enumerate() {
             first.push(next);
-            next += laws[law].internal().len() * places.of(cell).len();
+            next += laws[law].history_len() * places.of(cell).len();
         }
         Some(Self { places, first, values })
     }
 
     /// The internal variables of the point of a cell that is nearest to xi.
-    fn at(&self, cell: usize, law: &Law, xi: [f64; 2]) -> Internal<f64> {
-        let (mut out, count) = (law.virgin(), law.internal().len());
+    fn at(&self, cell: usize, law: &Law, xi: [f64; 2]) -> Vec<f64> {
+        let (mut out, count) = (law.virgin(), law.history_len());
         if count > 0 {
             let point = history::nearest(self.places.of(cell).iter().copied(), xi);
             let stored = self.values.iter().skip(self.first[cell] + count * point).take(count);
@@ -152,7 +153,7 @@ impl<'a> Solution<'a> {
             deformation: [value(0), value(1), value(2), value(3)],
             velocity: [value(4) / density, value(5) / density],
             displacement: if self.has_displacement() { [value(6), value(7)] } else { [0.0; 2] },
-            internal: self.memory.as_ref().map_or(law.virgin(), |memory| memory.at(cell, law, xi)),
+            history: self.memory.as_ref().map_or_else(|| law.virgin(), |memory| memory.at(cell, law, xi)),
         }
     }
 }

@@ -59,7 +59,7 @@ pub fn warning(problem: &Problem) -> Option<String> {
     let away = (0..body.mesh.cells.len()).filter(at_points).filter(|&c| !stand_on_nodes(&nodes, body.cloud.of(c)));
     let largest = away.map(|cell| body.certificates[cell].lebesgue).reduce(f64::max)?;
     Some(format!(
-        "histories = \"points\": this layout makes energy in plastic flow (face Lebesgue constant {largest:.2}; Taylor bars \
+        "histories = \"points\": this layout makes energy where the law flows (face Lebesgue constant {largest:.2}; Taylor bars \
          gained 4 to 80 % and more); with histories = \"nodes\" or layout = \"gauss\" they gain none"
     ))
 }

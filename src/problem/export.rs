@@ -7,10 +7,10 @@ use crate::error::{Error, Result};
 use crate::io::grid::Field as Values;
 use crate::io::snapshot::{GridFiles, Snapshot};
 use crate::io::{mesh_file, pvd, snapshot, vtu, xdmf};
-use crate::material::Law;
 use crate::observe::{Field, Solution, export};
 use crate::run::Folder;
 use crate::scene::Scene;
+use crate::step::Law;
 use std::path::{Path, PathBuf};
 
 /// The snapshots of a run, and what all of them share.
@@ -78,7 +78,7 @@ impl Export {
 
     /// The number of internal variables of all points of a grid.
     fn internal(&self, sheet: &Sheet) -> usize {
-        let of = |(cell, &law): (usize, &usize)| self.laws[law].internal().len() * sheet.places.of(cell).len();
+        let of = |(cell, &law): (usize, &usize)| self.laws[law].history_len() * sheet.places.of(cell).len();
         sheet.body.material.iter().enumerate().map(of).sum()
     }
 

@@ -46,8 +46,9 @@ impl Scene {
         };
         let carried = carry(mesh, &scheme.operators.line, &given.cloud, &self.limits, &on_nodes)?;
         let of_law = |law: usize| {
-            let names = scheme.laws[law].internal().iter();
-            names.map(|name| self.variable_of(given, name)).collect::<Result<Vec<_>>>()
+            let variables = scheme.laws[law].variables().iter();
+            let names = variables.flat_map(|v| v.numbers.iter().map(|(suffix, _)| format!("{}{suffix}", v.name)));
+            names.map(|name| self.variable_of(given, &name)).collect::<Result<Vec<_>>>()
         };
         let columns = (0..scheme.laws.len()).map(of_law).collect::<Result<Vec<_>>>()?;
         let mut values = Vec::new();
@@ -121,8 +122,7 @@ impl Scene {
     pub fn fields_of_points(&self, solution: &Solution) -> Vec<Field> {
         let mut fields = vec![Field::Velocity, Field::Deformation];
         fields.extend(solution.has_displacement().then_some(Field::Displacement));
-        let names = Field::NAMES.iter().map(|(_, field)| *field);
-        fields.extend(names.filter(|field| field.is_internal() && field.is_of(solution.laws)));
+        fields.extend(Field::of_laws(solution.laws).into_iter().filter(|field| field.is_history()));
         fields
     }
 }

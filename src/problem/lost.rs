@@ -111,7 +111,7 @@ impl Case<'_> {
         })
     }
 
-    /// Kinetic and strain energy and what plastic flow took, over those of the start and the work done; none where the
+    /// Kinetic and strain energy and what laws took, over those of the start and the work done; none where the
     /// work is not known.
     fn risen(&self) -> Option<f64> {
         let first = self.report.first?.accounted();
@@ -180,7 +180,7 @@ impl Case<'_> {
                 let why = "damps all jumps of F, and holds some corners that are crushed";
                 return Some(format!("scheme.flux = \"rusanov\" {why}"));
             }
-            _ if self.has_memory() => "makes energy in plastic flow",
+            _ if self.has_memory() => "makes energy where a law flows",
             Flux::Rusanov => "makes energy in large motions of a nearly incompressible body",
             _ => "holds less in compression",
         };

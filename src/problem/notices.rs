@@ -40,7 +40,7 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     all.extend(thin(mesh, blocks, scene.scheme.degree));
     if matches!(scene.curl, Curl::Lcf { .. }) {
         all.push(
-            "[curl] control = \"lcf\" makes energy on free, thin, soft and plastic bodies; it is there for comparison, the \
+            "[curl] control = \"lcf\" makes energy on free, thin, soft and yielding bodies; it is there for comparison, the \
              default is \"rotation\""
                 .to_owned(),
         );
@@ -144,7 +144,7 @@ const SPEEDS: &str = "velocities are in m/s, moduli in Pa, densities in kg/m^3";
 /// Conditions that prescribe a speed above all wave speeds of the unstrained body: at the start, half-way or at the end of
 /// the run, at the middles of its edges.
 fn fast_boundary(scene: &Scene, mesh: &Mesh, scheme: &Scheme) -> Vec<String> {
-    let speed = |law: &crate::material::Law| law.largest_speeds([1.0, 0.0, 0.0, 1.0], &law.virgin())[0];
+    let speed = |law: &crate::step::Law| law.largest_speeds([1.0, 0.0, 0.0, 1.0], &law.virgin())[0];
     let c = scheme.laws.iter().map(speed).fold(0.0, f64::max);
     let times = [scene.start, 0.5 * (scene.start + scene.end), scene.end];
     let mut all = Vec::new();

@@ -43,9 +43,9 @@ impl Scene {
     /// A line that leaves the mesh ([`Scene::check_lines`] has its place); files that cannot be made.
     pub fn observers(&self, mesh: &Mesh, folder: &Folder) -> Result<Vec<Box<dyn Observer>>> {
         let material = self.material_of_cells(mesh);
-        let plastic = self.laws().iter().any(|law| !law.internal().is_empty());
+        let dissipated = self.laws().iter().any(|law| law.has_memory());
         let drift = self.components() > UNKNOWNS;
-        let contents = Contents { drift, plastic, regrids: !self.regrids.is_empty(), balance: false };
+        let contents = Contents { drift, dissipated, regrids: !self.regrids.is_empty(), balance: false };
         let mut out: Vec<Box<dyn Observer>> = Vec::new();
         for output in &self.outputs {
             let schedule = schedule(output);
@@ -71,8 +71,7 @@ impl Scene {
     pub fn export_fields(&self) -> Vec<Field> {
         let asked = self.outputs.iter().find(|output| output.what == What::Fields).map(|output| output.fields.clone());
         let laws = self.laws();
-        let there = |field: &Field| *field != Field::Displacement && field.is_of(&laws);
-        let all = || Field::NAMES.iter().map(|(_, field)| *field).filter(there).collect();
+        let all = || Field::of_laws(&laws).into_iter().filter(|field| *field != Field::Displacement).collect();
         asked.unwrap_or_else(all)
     }
 }

@@ -217,7 +217,7 @@ impl Problem {
         if before.histories.is_empty() {
             return Ok(vec![]);
         }
-        let count: Vec<usize> = before.laws.iter().map(|law| law.internal().len()).collect();
+        let count: Vec<usize> = before.laws.iter().map(|law| law.history_len()).collect();
         let (old_places, places) = (before.places(), after.places());
         // The law is evaluated at the nodes, which are new points in cells that are new.
         let stays = |(cell, twin): (usize, &Option<usize>)| twin.filter(|&twin| old_places.of(twin) == places.of(cell));
@@ -260,7 +260,7 @@ impl Problem {
             Policy::Enrich | Policy::Layout => scene.build_cloud(to.mesh)?,
         };
         let samples = scene.scheme.method == Method::AderDgmpm;
-        let histories = scheme.laws.iter().any(|law| !law.internal().is_empty());
+        let histories = scheme.laws.iter().any(|law| law.has_memory());
         let (limits, virtual_points) = (&scene.limits, &old.virtual_points[..]);
         let line = &scheme.operators.line;
         let on_nodes = &scene.on_nodes(to.material);
@@ -285,7 +285,7 @@ fn deformation(scheme: &Scheme, state: &State, places: &Cloud) -> Vec<[f64; 4]> 
 
 /// The weights of the standard error: |F|^2 + |v|^2 / c_p^2 with the speed of the unstrained material.
 pub(super) fn scale(scheme: &Scheme) -> Vec<[f64; 8]> {
-    let of = |law: &crate::material::Law| {
+    let of = |law: &crate::step::Law| {
         let [c_p, _] = law.largest_speeds([1.0, 0.0, 0.0, 1.0], &law.virgin());
         let p = (law.density() * c_p).powi(-2);
         [1.0, 1.0, 1.0, 1.0, p, p, 0.0, 0.0]

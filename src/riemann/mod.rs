@@ -13,7 +13,6 @@ pub use interface::interface;
 pub use rusanov::Rusanov;
 
 use crate::lane::Lane;
-use crate::material::Law;
 use crate::state::UNKNOWNS;
 use crate::tensor;
 
@@ -51,11 +50,10 @@ pub struct Medium<L> {
 const SHARE: [f64; 7] = [1.0, 1.0, 0.7, 1.0, 0.75, 1.0, 0.75];
 
 impl Medium<f64> {
-    /// That of a law in a scheme of degree N.
-    pub fn new(law: &Law, degree: usize) -> Self {
+    /// That of a law with this rho0 (kg/m^3) and mu (Pa) in a scheme of degree N.
+    pub fn new(density: f64, shear_modulus: f64, degree: usize) -> Self {
         let share = SHARE[degree.min(SHARE.len() - 1)];
-        let (density, shear_admittance) = (law.density(), 1.0 / (law.density() * law.shear_modulus()).sqrt());
-        Self { density, shear_admittance, share, turn: 0.0 }
+        Self { density, shear_admittance: 1.0 / (density * shear_modulus).sqrt(), share, turn: 0.0 }
     }
 
     /// In all lanes.

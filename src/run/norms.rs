@@ -35,7 +35,7 @@ fn at_nodes(scheme: &Scheme, solution: &Solution, cell: usize) -> Vec<Vec<f64>> 
     };
     let nodes = operators.line.nodes();
     match &operators.points {
-        Some(points) if !law.internal().is_empty() => {
+        Some(points) if law.has_memory() => {
             let places = operators.places(block, lane);
             let at_points: Vec<Vec<f64>> =
                 places.iter().map(|xi| at(xi, &operators.line.basis.values_2d(*xi))).collect();

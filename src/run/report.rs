@@ -118,7 +118,7 @@ impl Report {
         if self.cpu > 0.0 { self.updates / self.cpu } else { 0.0 }
     }
 
-    /// What is there at the end (kinetic and strain energy, and what plastic flow has dissipated) and what was given to the
+    /// What is there at the end (kinetic and strain energy, and what laws have dissipated) and what was given to the
     /// outside, over what was there at the start and what came from outside: at most 1. It is 1 where there was nothing.
     pub fn energy_ratio(&self) -> f64 {
         let work = self.watch.work[0] + self.watch.work[1];
@@ -160,8 +160,8 @@ impl Report {
         if let Some(drift) = last.max_drift {
             pairs.push(("max_drift", json!(drift)));
         }
-        if let Some(plastic) = last.plastic {
-            pairs.push(("plastic_dissipation", json!(plastic)));
+        if let Some(dissipated) = last.dissipated {
+            pairs.push(("material_dissipation", json!(dissipated)));
         }
         if let Some(balance) = &self.balance {
             pairs.push(("balance", balance_json(balance, last.accounted())));

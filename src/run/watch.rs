@@ -1,6 +1,6 @@
 //! The watch over the energy: no body ever makes any, so a rise is an error of the method, and is said while it runs.
 //!
-//! A(t) = kinetic + strain energy + what plastic flow has dissipated - work done by the outside never rises. Its rise above
+//! A(t) = kinetic + strain energy + what laws have dissipated - work done by the outside never rises. Its rise above
 //! the lowest value so far is energy made out of nothing. It is measured against the largest of the energy at the start, the
 //! work done so far, and [`ROUNDING`] int rho0 c_p^2 dX: what is below is noise of the energy's own rounding.
 
@@ -17,7 +17,7 @@ pub struct Limits {
     pub stop: f64,
 }
 
-/// The bound that plastic runs have to keep, and a share that no result is good at.
+/// The bound that runs with a history have to keep, and a share that no result is good at.
 impl Default for Limits {
     fn default() -> Self {
         Self { warn: 1e-3, stop: 0.1 }

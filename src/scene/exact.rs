@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::exact::{
     Exact as Solution, LinearBar, Manufactured, PlasticImpact, Riemann, SimpleWave, Vortex, WallImpact,
 };
-use crate::material::Law;
+use crate::step::Law;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -154,7 +154,7 @@ impl Scene {
             let what = format!("\"{name}\" holds for a linear law only");
             return Err(self.error("exact.kind", what, "give the material law = \"linear-elastic\""));
         }
-        if let Some(law) = self.laws().iter().position(|law| law.internal().is_empty() == entry.plastic) {
+        if let Some(law) = self.laws().iter().position(|law| law.has_memory() != entry.plastic) {
             let law = &self.materials[law].law;
             let what = format!("\"{name}\" is no solution for the law \"{law}\"");
             let remedy = if entry.plastic {

@@ -2,7 +2,8 @@
 
 use super::reader::{Check, NOT_NEGATIVE, POSITIVE};
 use super::{Material, Scene};
-use crate::material::{self, J2, LinearElastic, NeoHookean};
+use crate::material::{J2, LinearElastic, NeoHookean};
+use crate::step;
 
 /// A law and its parameters, all required.
 #[derive(Debug)]
@@ -16,15 +17,20 @@ pub struct Law {
 }
 
 impl Law {
+    /// It with parameters in the range of all of them.
+    pub(super) fn sample(&self) -> step::Law {
+        (self.build)(&|_| 0.25, 1.0)
+    }
+
     /// Whether it has internal variables.
     pub fn has_memory(&self) -> bool {
-        // What they are does not depend on the parameters: these are in the range of all of them.
-        !(self.build)(&|_| 0.25, 1.0).internal().is_empty()
+        // What they are does not depend on the parameters.
+        self.sample().has_memory()
     }
 }
 
 /// Parameters by name and rho0 to a law.
-pub type Build = fn(&dyn Fn(&str) -> f64, f64) -> material::Law;
+pub type Build = fn(&dyn Fn(&str) -> f64, f64) -> step::Law;
 
 /// A parameter of a law.
 #[derive(Debug)]
@@ -52,12 +58,12 @@ pub const LAWS: &[Law] = &[
     Law {
         name: "neo-hookean",
         parameters: ISOTROPIC,
-        build: |of, density| material::Law::NeoHookean(NeoHookean::new(of("young"), of("poisson"), density)),
+        build: |of, density| step::Law::new(NeoHookean::new(of("young"), of("poisson"), density)),
     },
     Law {
         name: "linear-elastic",
         parameters: ISOTROPIC,
-        build: |of, density| material::Law::Linear(LinearElastic::new(of("young"), of("poisson"), density)),
+        build: |of, density| step::Law::new(LinearElastic::new(of("young"), of("poisson"), density)),
     },
     Law {
         name: "j2",
@@ -69,20 +75,20 @@ pub const LAWS: &[Law] = &[
         ],
         build: |of, density| {
             let (yield_stress, hardening) = (of("yield_stress"), of("hardening"));
-            material::Law::J2(J2::new(of("young"), of("poisson"), density, yield_stress, hardening))
+            step::Law::new(J2::new(of("young"), of("poisson"), density, yield_stress, hardening))
         },
     },
 ];
 
 impl Scene {
     /// The laws, in the order of the `[[material]]` tables.
-    pub fn laws(&self) -> Vec<material::Law> {
+    pub fn laws(&self) -> Vec<step::Law> {
         laws(&self.materials)
     }
 }
 
 /// The laws of some materials.
-pub(super) fn laws(materials: &[Material]) -> Vec<material::Law> {
+pub(super) fn laws(materials: &[Material]) -> Vec<step::Law> {
     let build = |m: &Material| {
         let parameter = |name: &str| m.parameters.get(name).copied().unwrap_or(f64::NAN);
         let law = LAWS.iter().find(|law| law.name == m.law)?;

@@ -17,7 +17,7 @@ names! {
     Histories {
         /// On the Gauss nodes, wherever the points are: no energy is made.
         Nodes = "nodes",
-        /// At the points. Away from the Gauss nodes plastic flow makes energy: for studies.
+        /// At the points. Away from the Gauss nodes flow makes energy: for studies.
         Points = "points",
     }
 }

@@ -2,9 +2,9 @@
 
 use super::reader::{Check, FINITE, POSITIVE, Reader};
 use super::regrid::{Criteria, NewMesh, Regrid};
-use super::{Field, Output, Scene, What, When};
+use super::{Field, LAWS, Output, Scene, What, When};
 use crate::error::Result;
-use crate::material::Law;
+use crate::step::Law;
 
 impl Scene {
     /// What is odd and no error: outputs that lie after the end of the run, as after `--set time.end=..`; a grid that is
@@ -87,7 +87,7 @@ fn output(table: &mut Reader, laws: &[Law]) -> Result<Output> {
         Some(When::EverySteps(_)) => None,
         _ => table.boolean("exact_times")?,
     };
-    let all = || Field::NAMES.iter().map(|(_, field)| *field).filter(|field| field.is_of(laws)).collect();
+    let all = || Field::of_laws(laws);
     let (what, fields) = match kind {
         Kind::Fields => (What::Fields, fields(table, laws)?.unwrap_or_else(all)),
         Kind::Line => {
@@ -113,7 +113,9 @@ fn output(table: &mut Reader, laws: &[Law]) -> Result<Output> {
 }
 
 fn fields(table: &mut Reader, laws: &[Law]) -> Result<Option<Vec<Field>>> {
-    let Some(fields) = table.choices("fields", Field::NAMES)? else { return Ok(None) };
+    let known = Field::of_laws(&LAWS.iter().map(super::Law::sample).collect::<Vec<_>>());
+    let known: Vec<(&str, Field)> = known.iter().map(|field| (field.name(), *field)).collect();
+    let Some(fields) = table.choices("fields", &known)? else { return Ok(None) };
     if let Some(i) = fields.iter().position(|field| !field.is_of(laws)) {
         let what = format!("no material of the scene has \"{}\"", fields[i].name());
         return Err(table.wrong_entry("fields", i, what, "remove it, or give a material law = \"j2\""));

@@ -9,8 +9,8 @@
 
 use super::Problem;
 use crate::error::{Error, Result};
-use crate::material::Law;
 use crate::state::{State, UNKNOWNS};
+use crate::step::Law;
 use crate::step::{Survey, Work};
 use rayon::prelude::*;
 

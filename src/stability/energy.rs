@@ -11,7 +11,7 @@ use super::Problem;
 use super::operator::Rate;
 use super::spectrum::Number;
 use crate::error::Result;
-use crate::material::Law;
+use crate::step::Law;
 use crate::step::history;
 use faer::{Mat, Side, c64};
 use rayon::prelude::*;
@@ -41,19 +41,19 @@ impl Energy {
         // Histories stand cell by cell, for cells whose law has some.
         let mut first = vec![0];
         for (cell, &(block, _)) in scheme.operators.blocks.slot.iter().enumerate() {
-            let count = scheme.laws[scheme.operators.blocks.material[block]].internal().len();
+            let count = scheme.laws[scheme.operators.blocks.material[block]].history_len();
             first.push(first[cell] + count * (places.first[cell + 1] - places.first[cell]));
         }
         for cell in problem.columns() {
             let law = &scheme.laws[scheme.operators.blocks.material[scheme.operators.blocks.slot[cell].0]];
-            let (count, modulus) = (law.internal().len(), law.density() * problem.speeds[cell].powi(2));
+            let (count, modulus) = (law.history_len(), law.density() * problem.speeds[cell].powi(2));
             for a in 0..nodes {
                 let f = std::array::from_fn(|k| u[cell * problem.per_cell() + k * nodes + a]);
                 let mut known = law.virgin();
                 if count > 0 {
                     let xi = places.xi[places.first[cell]..places.first[cell + 1]].iter().copied();
                     let at = first[cell] + count * history::nearest(xi, scheme.operators.line.basis.node_2d(a));
-                    known[..count].copy_from_slice(&internal[at..at + count]);
+                    known.copy_from_slice(&internal[at..at + count]);
                 }
                 let tangent = tangent(law, f, &known);
                 tangents.push(tangent.map(|row| row.map(|x| x / modulus)));
@@ -114,7 +114,7 @@ fn smallest(matrix: &Mat<f64>) -> Result<f64> {
 }
 
 /// dP/dF of the law at fixed internal variables of t_n, symmetrised: central differences at two distances.
-fn tangent(law: &Law, f: [f64; 4], known: &crate::material::Internal<f64>) -> [[f64; 4]; 4] {
+fn tangent(law: &Law, f: [f64; 4], known: &[f64]) -> [[f64; 4]; 4] {
     let mut columns = [[0.0; 4]; 4];
     for (j, column) in columns.iter_mut().enumerate() {
         let at = |amount: f64| {

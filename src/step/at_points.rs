@@ -4,7 +4,7 @@ use super::history::recall;
 use super::predictor::{self, transfer::FieldsToPoints};
 use super::{Scheme, volume};
 use crate::lane::{Coefficient, F8, Lanes, Work};
-use crate::material::Material;
+use crate::material::{Material, Numbers, Past, count};
 use crate::operators::{PointMatrices, Share};
 use crate::tensor::DEFORMATION;
 
@@ -64,17 +64,17 @@ fn to_points<L: Lanes, C: Coefficient>(
     matrices.points()
 }
 
-/// h_(n+1) = law(F, h_n) at all points.
+/// h_(n+1) = law(F, h_n, dt) at all points.
 #[inline(always)]
-pub(super) fn remember<L: Lanes, M: Material>(law: M, points: &PointValues, before: &[F8], after: &mut [F8]) {
-    let variables = M::INTERNAL.len();
+pub(super) fn remember<L: Lanes, M: Material>(law: M, points: &PointValues, before: &[F8], after: &mut [F8], dt: f64) {
+    let variables = count::<M>();
     if variables == 0 {
         return;
     }
     for (p, after) in after.chunks_exact_mut(variables).enumerate() {
-        let mut internal = recall::<L, M>(&law, before, p);
-        law.stress(points.at::<L>(p), &mut internal[..variables]);
-        for (value, after) in internal.into_iter().zip(after) {
+        let mut past = Past { history: recall::<L, M>(before, p), dt };
+        law.stress(points.at::<L>(p), &mut past);
+        for (value, after) in past.history.slice().iter().zip(after) {
             value.store(after);
         }
     }

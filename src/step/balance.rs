@@ -35,11 +35,11 @@ use crate::tensor::{DEFORMATION, dot, times};
 
 /// The balance of energy since the start of a run, in J per metre of thickness.
 ///
-/// E(t) = E(0) + works - dissipations, where E holds what plastic flow has dissipated ([`super::Totals::accounted`]): P is
+/// E(t) = E(0) + works - dissipations, where E holds what laws have dissipated ([`super::Totals::accounted`]): P is
 /// the derivative of both together.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Balance {
-    /// Kinetic and strain energy E(0) at the start, with what plastic flow had dissipated.
+    /// Kinetic and strain energy E(0) at the start, with what laws had dissipated.
     pub start: f64,
     /// The same now.
     pub energy: f64,
@@ -84,7 +84,7 @@ impl Balance {
         by_step + self.regrid_dissipation + self.correction_dissipation
     }
 
-    /// What no entry explains of the `energy` (with plastic dissipation) that is there now: rounding, unless an entry is missing.
+    /// What no entry explains of the `energy` (with what laws have dissipated) that is there now: rounding, unless an entry is missing.
     pub fn remainder(&self, energy: f64) -> f64 {
         energy - self.start - self.work() + self.dissipation()
     }
@@ -97,7 +97,7 @@ pub(super) struct BlockBalance {
     pub flux: F8,
     /// The power of what the boundary condition differs from the trace of the body.
     pub boundary: F8,
-    /// The energy, with what plastic flow has dissipated, after the corrector.
+    /// The energy, with what laws have dissipated, after the corrector.
     pub corrected: F8,
     /// And that of the new state, after the control of the curl and corrections.
     pub energy: F8,

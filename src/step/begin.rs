@@ -4,6 +4,7 @@
 use super::balance::BlockBalance;
 use super::block::Block;
 use super::displacement::{DisplacementRate, MeanDisplacement};
+use super::law_work::LawWork;
 use super::loss::FacePoint;
 use super::outside::ExternalWork;
 use super::phase::Clock;
@@ -13,12 +14,12 @@ use super::sources::AddSources;
 use super::volume::{self, with_nodes};
 use super::worst::Worst;
 use super::{Method, Phase, Scratch};
-use crate::lane::{Coefficient, F8, Lanes, Work, prefetch};
+use crate::lane::{Coefficient, F8, Lanes, prefetch};
+use crate::material::Material;
 use crate::operators::{PointMatrices, Share};
 use crate::riemann::Looks;
 use crate::state::{State, UNKNOWNS};
 use crate::tensor::DEFORMATION;
-use crate::with_law;
 
 /// The work on one block.
 pub(super) struct Begin<'a> {
@@ -114,7 +115,7 @@ impl Begin<'_> {
         let arrays = &mut self.scratch.points;
         with_matrices!(self, points, [matrices, later] => {
             ask_for(later, 1);
-            block.scheme.kernel.run(Predict { block, matrices, metric, internal, arrays });
+            ForCoefficient::predict(block, Predict { block, matrices, metric, internal, arrays });
         });
     }
 
@@ -176,15 +177,15 @@ impl Begin<'_> {
         });
         // Later stages of RK are no states: what is wrong with them shows in the state that they make.
         let worst = (block.stage.number == 0).then_some((&mut *self.worst, block.cells()));
-        let law = block.law();
-        if kernel.run(volume::Speeds { law, metric, width, looks, traces: self.traces, worst }) {
+        let speeds = volume::Speeds { metric, width, looks, traces: self.traces, worst };
+        if block.law().block().speeds_of_traces(kernel, speeds) {
             self.worst.lost_at(FacePoint::find(block.number, block.cells(), self.traces, width));
         }
     }
 }
 
 /// The predictor under the type of the law.
-struct Predict<'a, C> {
+pub(super) struct Predict<'a, C> {
     block: Block<'a>,
     matrices: &'a PointMatrices<C>,
     metric: &'a [F8],
@@ -192,18 +193,33 @@ struct Predict<'a, C> {
     arrays: &'a mut predictor::Arrays,
 }
 
-impl<C: Coefficient> Work for Predict<'_, C> {
+/// The predictor by the kind of its matrices.
+trait ForCoefficient: Coefficient + Sized {
+    fn predict(block: Block, work: Predict<Self>);
+}
+
+impl ForCoefficient for f64 {
+    #[inline]
+    fn predict(block: Block, work: Predict<f64>) {
+        block.law().block().predict_shared(block.scheme.kernel, work);
+    }
+}
+
+impl ForCoefficient for F8 {
+    #[inline]
+    fn predict(block: Block, work: Predict<F8>) {
+        block.law().block().predict_own(block.scheme.kernel, work);
+    }
+}
+
+impl<C: Coefficient> LawWork for Predict<'_, C> {
     type Out = ();
     #[inline(always)]
-    fn run<L: Lanes>(self) {
+    fn run<L: Lanes, M: Material>(self, law: M) {
         let Self { block, matrices, metric, internal, arrays } = self;
         let Method::Ader { time, sweeps } = &block.scheme.method else { return };
         let (weights, dt, kernel) = (&time.weights[..], block.stage.dt, block.scheme.kernel);
-        with_law!(block.law(), law => {
-            // A copy: what is stored in the predictor cannot change it, so its constants stay in registers.
-            let law = &{ *law };
-            Predictor { law, matrices, metric, weights, sweeps, dt, internal, kernel }.run::<L>(arrays);
-        });
+        Predictor { law: &law, matrices, metric, weights, sweeps, dt, internal, kernel }.run::<L>(arrays);
     }
 }
 

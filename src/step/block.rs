@@ -1,9 +1,8 @@
 //! A block in a stage of a step: what all phases ask for.
 
 use super::volume::{Masses, with_nodes};
-use super::{Scheme, Stage};
+use super::{Law, Scheme, Stage};
 use crate::lane::F8;
-use crate::material::Law;
 use crate::operators::{Metric, Points};
 use crate::riemann::Medium;
 use crate::state::State;
@@ -41,7 +40,7 @@ impl<'a> Block<'a> {
     /// What its cells are made of.
     #[inline]
     pub fn medium(&self) -> Medium<f64> {
-        Medium::new(self.law(), self.scheme.operators.degree)
+        Medium::new(self.law().density(), self.law().shear_modulus(), self.scheme.operators.degree)
     }
 
     /// Its lanes that are cells, not padding.

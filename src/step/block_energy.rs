@@ -2,17 +2,17 @@
 
 use super::at_points::at_points;
 use super::history::recall;
+use super::law_work::LawWork;
 use super::volume::{Masses, with_nodes};
 use super::{Scheme, Scratch, Work as Memory, dense, with_scratch};
-use crate::lane::{F8, Lanes, Work};
-use crate::material::Material;
+use crate::lane::{F8, Lanes};
+use crate::material::{Material, Past, count, virgin};
 use crate::state::State;
 use crate::tensor::DEFORMATION;
-use crate::with_law;
 use rayon::prelude::*;
 
 /// sum_a m_a W(F_a), for a law with memory sum_p w_p (W + D)(F_p, h_p) with w_p = int chi_p dX, and the kinetic energy
-/// sum_a m_a |p_a|^2 / (2 rho0); J/m, a lane a cell. D is what plastic flow has dissipated, with one more
+/// sum_a m_a |p_a|^2 / (2 rho0); J/m, a lane a cell. D is what the law has dissipated, with one more
 /// return from h_p to F_p where there is one to do.
 pub(super) struct BlockEnergy<'a> {
     pub scheme: &'a Scheme,
@@ -21,6 +21,8 @@ pub(super) struct BlockEnergy<'a> {
     pub u: &'a [F8],
     /// Its internal variables.
     pub internal: &'a [F8],
+    /// The time since these were those of `u`, s.
+    pub dt: f64,
     /// The thread's arrays.
     pub scratch: &'a mut Scratch,
 }
@@ -32,48 +34,36 @@ impl BlockEnergy<'_> {
         let (line, metric) = (&operators.line, &operators.geometry.blocks[self.block]);
         let masses = &mut self.scratch.nodes.masses;
         with_nodes!(line.m, M => { self.scheme.kernel.run(Masses::<'_, M> { line, metric, masses }); });
-        self.scheme.kernel.run(self)
+        let law = &self.scheme.laws[self.scheme.operators.blocks.material[self.block]];
+        law.block().stored_energy(self.scheme.kernel, StoredEnergy(self))
     }
 }
 
-impl Work for BlockEnergy<'_> {
+/// The same under the type of the law.
+pub(super) struct StoredEnergy<'a>(BlockEnergy<'a>);
+
+impl LawWork for StoredEnergy<'_> {
     type Out = F8;
     #[inline(always)]
-    fn run<L: Lanes>(self) -> F8 {
-        let Self { scheme, block, u, internal, scratch } = self;
-        let law = &scheme.laws[scheme.operators.blocks.material[block]];
+    fn run<L: Lanes, M: Material>(self, law: M) -> F8 {
+        let BlockEnergy { scheme, block, u, internal, dt, scratch } = self.0;
         let mut out = F8::ZERO;
         let moving = kinetic_energy::<L>(law.density(), &scratch.nodes.masses, u);
-        let strain = with_law!(law, law => {
-            // A copy: its constants stay in registers.
-            let law = *law;
-            if is_elastic(&law) {
-                at_nodes::<L, _>(law, &scratch.nodes.masses, u)
-            } else {
-                let points = at_points::<L>(scheme, u, block, &mut scratch.nodes, &mut scratch.points);
-                let weights = scheme.histories.weights(block);
-                let mut sum = L::zero();
-                for (p, weight) in weights.iter().enumerate() {
-                    let (f, internal) = (points.at::<L>(p), recall::<L, _>(&law, internal, p));
-                    let internal = &internal[..count_of(&law)];
-                    sum = L::load(weight).mul_add(law.energy(f, internal) + law.dissipated(f, internal), sum);
-                }
-                sum
+        let strain = if count::<M>() == 0 {
+            at_nodes::<L, _>(law, &scratch.nodes.masses, u)
+        } else {
+            let points = at_points::<L>(scheme, u, block, &mut scratch.nodes, &mut scratch.points);
+            let weights = scheme.histories.weights(block);
+            let mut sum = L::zero();
+            for (p, weight) in weights.iter().enumerate() {
+                let (f, past) = (points.at::<L>(p), Past { history: recall::<L, M>(internal, p), dt });
+                sum = L::load(weight).mul_add(law.energy(f, &past) + law.dissipated(f, &past), sum);
             }
-        });
+            sum
+        };
         (moving + strain).store(&mut out);
         out
     }
-}
-
-#[inline(always)]
-fn count_of<M: Material>(_: &M) -> usize {
-    M::INTERNAL.len()
-}
-
-#[inline(always)]
-fn is_elastic<M: Material>(law: &M) -> bool {
-    count_of(law) == 0
 }
 
 #[inline(always)]
@@ -81,7 +71,7 @@ fn at_nodes<L: Lanes, M: Material>(law: M, masses: &[F8], u: &[F8]) -> L {
     let mut sum = L::zero();
     for (a, mass) in masses.iter().enumerate() {
         let f = dense::gather::<L, DEFORMATION>(u, masses.len(), a);
-        sum = L::load(mass).mul_add(law.energy(f, &[]), sum);
+        sum = L::load(mass).mul_add(law.energy(f, &Past::now(virgin::<L, M>())), sum);
     }
     sum
 }
@@ -107,7 +97,7 @@ impl Scheme {
             *out = with_scratch(&memory.scratch, |scratch| {
                 let u = &state.u[stride * block..stride * (block + 1)];
                 let internal = self.histories.of(&state.internal, block);
-                BlockEnergy { scheme: self, block, u, internal, scratch }.find()
+                BlockEnergy { scheme: self, block, u, internal, dt: 0.0, scratch }.find()
             });
         });
         cells.iter().zip(&blocks.count).map(|(energy, &count)| energy.0[..count].iter().sum::<f64>()).sum()

@@ -142,7 +142,8 @@ impl Scheme {
                 *worst = Worst::NONE;
                 let u = &state.u[stride * block..stride * (block + 1)];
                 let history = History::Now(self.histories.of(&state.internal, block));
-                self.kernel.run(Examine { scheme: self, block, u, history, scratch, speed, worst });
+                let law = &self.laws[self.operators.blocks.material[block]];
+                law.block().examine(self.kernel, Examine { scheme: self, block, u, history, scratch, speed, worst });
             });
         });
         *loss = balance.as_mut().map_or(0.0, |balance| self.renew_energy(state, changed, balance, scratch));
@@ -161,8 +162,9 @@ impl Scheme {
         for (block, balance) in balance.iter_mut().enumerate().filter(|(block, _)| changed[*block]) {
             let u = &state.u[stride * block..stride * (block + 1)];
             let internal = self.histories.of(&state.internal, block);
-            let energy =
-                with_scratch(scratch, |scratch| BlockEnergy { scheme: self, block, u, internal, scratch }.find());
+            let energy = with_scratch(scratch, |scratch| {
+                BlockEnergy { scheme: self, block, u, internal, dt: 0.0, scratch }.find()
+            });
             for lane in 0..self.operators.blocks.count[block] {
                 loss += balance.energy.0[lane] - energy.0[lane];
             }

@@ -1,13 +1,13 @@
 //! The control of the curl of F in one block: what [`Relax`] takes of R = F - Pi F = C C^T W F.
 
 use super::curl_core::{Arrays, Cells};
+use super::law_work::LawWork;
 use super::volume::Masses;
-use crate::lane::{F8, Lane, Lanes, Work};
-use crate::material::{Law, Material, virgin};
+use crate::lane::{F8, Kernel, Lane, Lanes, Work, load_array, store_array};
+use crate::material::{Material, Past, virgin};
 use crate::operators::curl_free::{Class, Halves, Relax};
 use crate::operators::{CurlFree, Matrix, Share};
 use crate::tensor::{DEFORMATION, contract};
-use crate::with_law;
 
 /// The control of the curl of F.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +25,7 @@ pub const ROTATION: f64 = 1.0;
 /// What of c_p it goes with at least, where the law is elastic. A rotation inside of a cell that no displacement has costs no energy,
 /// nothing restores it, and it grows with time until it meets compression: an unloaded steel frame that spins at 50 turns a second
 /// (S2, 20 ms) gained 8 % of its energy and stopped with 0; it keeps .999 of it with .03, .9992 with .1, .3 and 1. In tension waves grow
-/// with it (diag(1.3, 1), N = 3: 2e-6 c/h with .03, 6e-5 with .1). In plastic flow the histories go with such rotations: a
+/// with it (diag(1.3, 1), N = 3: 2e-6 c/h with .03, 6e-5 with .1). Where laws flow, their histories go with such rotations: a
 /// frame that yields all over makes ten times its energy with .1.
 pub const SLOWEST: f64 = 0.03;
 
@@ -104,7 +104,9 @@ pub struct Rotation<'a> {
     /// The block.
     pub block: usize,
     /// Its law, objective.
-    pub law: &'a Law,
+    pub law: &'a super::Law,
+    /// The instruction set.
+    pub kernel: Kernel,
     /// 4 numbers a node.
     pub gradients: &'a mut [F8],
 }
@@ -114,7 +116,7 @@ impl Rotation<'_> {
     #[inline(always)]
     pub fn run<L: Lanes, const M: usize>(self, theta: [L; 2], masses: Masses<'_, M>, arrays: Arrays, u: &mut [F8]) {
         let n = M * M;
-        let Self { curl_free, block, law, gradients } = self;
+        let Self { curl_free, block, law, kernel, gradients } = self;
         let gradients = &mut gradients[..DEFORMATION * n];
         gradients.copy_from_slice(&u[..DEFORMATION * n]);
         let Masses { line, metric, masses } = masses;
@@ -138,8 +140,11 @@ impl Rotation<'_> {
         let inverse = L::splat(-1.0) / total;
         let mean = [sum[0] * inverse, sum[1] * inverse, sum[2] * inverse, sum[3] * inverse];
         let mut theta = theta[1];
-        if law.internal().is_empty() {
-            let work = with_law!(law, law => { let law = *law; power::<L, _>(&law, [u, gradients, mass], mean, n) });
+        if !law.has_memory() {
+            let mut numbers = [F8::ZERO; DEFORMATION];
+            store_array(mean, &mut numbers);
+            let work = Power { f: &u[..DEFORMATION * n], change: gradients, masses: mass, mean: &numbers };
+            let work = L::load(&law.block().power(kernel, work));
             // 1 where energy falls, 0 where it rises or nothing is done.
             theta = theta * (-work / (work.max(-work) + L::splat(f64::MIN_POSITIVE))).max(L::zero());
         }
@@ -172,20 +177,37 @@ fn turn<L: Lanes>(theta: L, gradients: &mut [F8], u: &mut [F8], n: usize) {
     }
 }
 
-/// sum_a m_a P_a : (D_a - mean D) of F (in the first 4 components of u), D and the masses m; `mean` is -mean D.
-#[inline(always)]
-fn power<L: Lanes, K: Material>(law: &K, [u, d, mass]: [&[F8]; 3], mean: [L; 4], n: usize) -> L {
-    let mut sum = L::zero();
-    for a in 0..n {
-        let p =
-            law.stress(super::dense::gather::<L, DEFORMATION>(u, n, a), &mut virgin::<L, K>(law)[..K::INTERNAL.len()]);
-        let mut power = L::zero();
-        for k in 0..DEFORMATION {
-            power = p[k].mul_add(L::load(&d[k * n + a]) + mean[k], power);
+/// sum_a m_a P_a : (D_a - mean D) with P of virgin material, a lane a cell.
+pub struct Power<'a> {
+    /// F, [component][node].
+    f: &'a [F8],
+    /// D, likewise.
+    change: &'a [F8],
+    /// m.
+    masses: &'a [F8],
+    /// -mean D.
+    mean: &'a [F8; DEFORMATION],
+}
+
+impl LawWork for Power<'_> {
+    type Out = F8;
+    #[inline(always)]
+    fn run<L: Lanes, M: Material>(self, law: M) -> F8 {
+        let Self { f, change, masses, mean } = self;
+        let (n, mut sum, mut out) = (masses.len(), L::zero(), F8::ZERO);
+        let mean = load_array::<L, DEFORMATION>(mean);
+        for (a, mass) in masses.iter().enumerate() {
+            let f = super::dense::gather::<L, DEFORMATION>(f, n, a);
+            let p = law.stress(f, &mut Past::now(virgin::<L, M>()));
+            let mut power = L::zero();
+            for k in 0..DEFORMATION {
+                power = p[k].mul_add(L::load(&change[k * n + a]) + mean[k], power);
+            }
+            sum = L::load(mass).mul_add(power, sum);
         }
-        sum = L::load(&mass[a]).mul_add(power, sum);
+        sum.store(&mut out);
+        out
     }
-    sum
 }
 
 /// Both rows of F at four nodes, a row in registers, see [`Halves`].

@@ -17,8 +17,8 @@ pub struct Totals {
     pub kinetic: f64,
     /// int W dX, J/m: all that is stored.
     pub strain: f64,
-    /// What plastic flow has dissipated since the material was virgin, J/m; only where a law has memory.
-    pub plastic: Option<f64>,
+    /// What laws have dissipated since their material was virgin, J/m; only where one has memory.
+    pub dissipated: Option<f64>,
     /// int p dX, kg/s (per metre of thickness).
     pub momentum: [f64; 2],
     /// int (x_1 p_2 - x_2 p_1) dX with x = X + u, kg m/s (per metre of thickness), about the origin; only where the
@@ -66,7 +66,7 @@ impl Totals {
     const EMPTY: Totals = Totals {
         kinetic: 0.0,
         strain: 0.0,
-        plastic: None,
+        dissipated: None,
         momentum: [0.0; 2],
         angular_momentum: None,
         deformation: [0.0; DEFORMATION],
@@ -81,7 +81,7 @@ impl Totals {
         Totals {
             angular_momentum: known,
             max_drift: known,
-            plastic: (!state.internal.is_empty()).then_some(0.0),
+            dissipated: (!state.internal.is_empty()).then_some(0.0),
             ..Totals::EMPTY
         }
     }
@@ -91,15 +91,15 @@ impl Totals {
         self.kinetic + self.strain
     }
 
-    /// [`Totals::energy`] and what plastic flow has dissipated: what the balance of a step is about, J/m.
+    /// [`Totals::energy`] and what laws have dissipated: what the balance of a step is about, J/m.
     pub fn accounted(&self) -> f64 {
-        self.energy() + self.plastic.unwrap_or(0.0)
+        self.energy() + self.dissipated.unwrap_or(0.0)
     }
 
     fn add(&mut self, other: &Totals) {
         self.kinetic += other.kinetic;
         self.strain += other.strain;
-        self.plastic = self.plastic.zip(other.plastic).map(|(a, b)| a + b);
+        self.dissipated = self.dissipated.zip(other.dissipated).map(|(a, b)| a + b);
         self.momentum.iter_mut().zip(other.momentum).for_each(|(a, b)| *a += b);
         self.angular_momentum = self.angular_momentum.zip(other.angular_momentum).map(|(a, b)| a + b);
         self.deformation.iter_mut().zip(other.deformation).for_each(|(a, b)| *a += b);
@@ -132,7 +132,7 @@ impl Scheme {
     fn totals_of(&self, state: &State, block: usize, lane: usize) -> Totals {
         let (n, law) = (self.operators.nodes(), &self.laws[self.operators.blocks.material[block]]);
         let u = &state.u[block * state.components * n..];
-        let memory = !law.internal().is_empty();
+        let memory = law.has_memory();
         let mut sum = Totals::empty(state);
         let (mut drift, mut area) = (0.0, 0.0);
         for (a, mass) in self.operators.geometry.masses(&self.operators.line, block, lane).enumerate() {
@@ -141,7 +141,7 @@ impl Scheme {
             sum.add(&Totals {
                 kinetic: mass * (p1 * p1 + p2 * p2) / (2.0 * law.density()),
                 strain: if memory { 0.0 } else { mass * law.energy(f) },
-                plastic: sum.plastic.map(|_| 0.0),
+                dissipated: sum.dissipated.map(|_| 0.0),
                 momentum: [mass * p1, mass * p2],
                 angular_momentum: self.position(state, block, lane, a).map(|x| mass * (x[0] * p2 - x[1] * p1)),
                 deformation: f.map(|x| mass * x),
@@ -194,7 +194,7 @@ impl Scheme {
         for (p, (f, weight)) in at_points.enumerate() {
             let response = law.response(f.map(|f| f.0[lane]), &self.internal_at(state, block, lane, p));
             sum.strain += weight.0[lane] * response.energy;
-            sum.plastic = sum.plastic.map(|plastic| plastic + weight.0[lane] * response.dissipated);
+            sum.dissipated = sum.dissipated.map(|dissipated| dissipated + weight.0[lane] * response.dissipated);
         }
         sum
     }

@@ -107,10 +107,11 @@ impl Finish<'_> {
 
     /// h_(n+1) = law(F, h_n) at the points, then wave speeds and min J of the new state; books its time itself.
     fn histories_and_survey(self, new: New) {
-        let Self { block: Block { scheme, number: block, .. }, state, scratch, .. } = self;
+        let (law, Self { block: Block { scheme, number: block, stage }, state, scratch, .. }) =
+            (self.block.law(), self);
         let New { u, internal, speed, worst } = new;
-        let history = History::Before(scheme.histories.of(&state.internal, block), internal);
-        scheme.kernel.run(Examine { scheme, block, u, history, scratch, speed, worst });
+        let history = History::Before(scheme.histories.of(&state.internal, block), internal, stage.dt);
+        law.block().examine(scheme.kernel, Examine { scheme, block, u, history, scratch, speed, worst });
     }
 
     /// Books the work of sources in the step to `u`.
@@ -130,9 +131,9 @@ impl Finish<'_> {
     /// Books the energy of `u` where the balance is on.
     fn meter(&mut self, u: &[F8], book: impl Fn(&mut BlockBalance, F8)) {
         let Some(balance) = self.balance.as_deref_mut() else { return };
-        let Block { scheme, number: block, .. } = self.block;
+        let (Block { scheme, number: block, .. }, dt) = (self.block, self.block.stage.dt);
         let internal = self.block.internal(self.state);
-        book(balance, BlockEnergy { scheme, block, u, internal, scratch: self.scratch }.find());
+        book(balance, BlockEnergy { scheme, block, u, internal, dt, scratch: self.scratch }.find());
     }
 }
 
@@ -178,7 +179,7 @@ impl<const M: usize> Work for Project<'_, '_, M> {
                     return;
                 }
                 let prestress = L::load(&speed.prestress);
-                let slowest = if law.internal().is_empty() { curl::SLOWEST } else { 0.0 };
+                let slowest = if law.has_memory() { 0.0 } else { curl::SLOWEST };
                 if slowest == 0.0 && speed.prestress.0.iter().all(|c| *c == 0.0) {
                     return;
                 }
@@ -187,7 +188,13 @@ impl<const M: usize> Work for Project<'_, '_, M> {
                     curl::relaxation(turn * factor),
                     curl::relaxation((L::splat(curl::DEVIATOR) * prestress).min(c) * factor),
                 ];
-                let rotation = curl::Rotation { curl_free, block: block.number, law, gradients: &mut nodes.stage };
+                let rotation = curl::Rotation {
+                    curl_free,
+                    block: block.number,
+                    law,
+                    kernel: block.scheme.kernel,
+                    gradients: &mut nodes.stage,
+                };
                 rotation.run::<L, M>(theta, masses, arrays, next);
             }
         }

@@ -7,7 +7,6 @@ use super::outside::ExternalWork;
 use super::volume::{Arrays, width};
 use crate::boundary::FacePoint;
 use crate::lane::{F8, LANES, Lane, Lanes, Work, load_array, store_array};
-use crate::material::Law;
 use crate::mesh::{FACES, map};
 use crate::operators::{Metric, Neighbour, Side};
 use crate::riemann::{Flux, Looks, Medium, Riemann, Trace, hold, interface};
@@ -299,7 +298,7 @@ impl Block<'_> {
         }
         let law = self.law();
         let at = self.face_point(face, point, lane);
-        let trace = |x: &dyn Fn(usize) -> f64, sign: f64, law: &Law| {
+        let trace = |x: &dyn Fn(usize) -> f64, sign: f64, law: &super::Law| {
             let f = [x(0), x(1), x(2), x(3)];
             let c = if self.scheme.flux.looks() == Looks::Shear { [x(8), x(9)] } else { law.speeds(f, at.normal) };
             Trace { f, v: [x(4), x(5)], t: [sign * x(6), sign * x(7)], c }

@@ -4,10 +4,11 @@
 //! RK-DGFEM) its nodes, and are never projected. The predictor and every stage integrate the law from their values h_n at
 //! the start of the step, without storing what comes out; the step ends with h_(n+1) = law(F_p^(n+1), h_n).
 
+use super::Law;
 use super::Scheme;
 use crate::cloud::Cloud;
 use crate::lane::{F8, LANES, Lanes};
-use crate::material::{Internal, Law, MOST_INTERNAL, Material};
+use crate::material::{Material, Numbers, count, virgin};
 use crate::operators::{Operators, Share};
 use crate::state::State;
 use std::ops::Range;
@@ -27,12 +28,12 @@ pub struct Histories {
 impl Histories {
     /// Those of the blocks of `operators` under these laws.
     pub fn new(operators: &Operators, laws: &[Law]) -> Self {
-        if laws.iter().all(|law| law.internal().is_empty()) {
+        if laws.iter().all(|law| !law.has_memory()) {
             return Self::default();
         }
         let mut out = Self { first: vec![0], weights: vec![], first_point: vec![0] };
         for (block, &material) in operators.blocks.material.iter().enumerate() {
-            let variables = laws[material].internal().len();
+            let variables = laws[material].history_len();
             out.first.push(out.first[block] + variables * operators.block_points(block));
             if variables > 0 {
                 out.weights.extend(weights_of_block(operators, block));
@@ -105,10 +106,10 @@ fn weights_of_block(operators: &Operators, block: usize) -> Vec<F8> {
 
 /// The internal variables of a point of a block, for a law.
 #[inline(always)]
-pub fn recall<L: Lanes, M: Material>(_: &M, block: &[F8], point: usize) -> Internal<L> {
-    let mut out = [L::zero(); MOST_INTERNAL];
-    let count = M::INTERNAL.len();
-    for (out, stored) in out.iter_mut().zip(&block[count * point..][..count]) {
+pub fn recall<L: Lanes, M: Material>(block: &[F8], point: usize) -> M::History<L> {
+    let mut out = virgin::<L, M>();
+    let count = count::<M>();
+    for (out, stored) in out.slice_mut().iter_mut().zip(&block[count * point..][..count]) {
         *out = L::load(stored);
     }
     out
@@ -116,10 +117,10 @@ pub fn recall<L: Lanes, M: Material>(_: &M, block: &[F8], point: usize) -> Inter
 
 impl Scheme {
     /// The internal variables of a point of a lane; what virgin material has, where the law has none.
-    pub(super) fn internal_at(&self, state: &State, block: usize, lane: usize, point: usize) -> Internal<f64> {
+    pub(super) fn internal_at(&self, state: &State, block: usize, lane: usize, point: usize) -> Vec<f64> {
         let law = &self.laws[self.operators.blocks.material[block]];
         let mut out = law.virgin();
-        let count = law.internal().len();
+        let count = law.history_len();
         let own = self.histories.of(&state.internal, block);
         for (out, stored) in out.iter_mut().zip(own.iter().skip(count * point).take(count)) {
             *out = stored.0[lane];
@@ -152,7 +153,7 @@ impl Scheme {
         state.internal = vec![F8::ZERO; self.histories.len()];
         for block in 0..if self.histories.is_empty() { 0 } else { self.operators.blocks.len() } {
             let virgin = self.laws[self.operators.blocks.material[block]].virgin();
-            let count = self.laws[self.operators.blocks.material[block]].internal().len();
+            let count = self.laws[self.operators.blocks.material[block]].history_len();
             let range = self.histories.first[block]..self.histories.first[block + 1];
             state.internal[range].iter_mut().enumerate().for_each(|(k, out)| *out = F8::splat(virgin[k % count]));
         }
@@ -181,7 +182,7 @@ impl Scheme {
             return;
         }
         for &(block, lane) in &self.operators.blocks.slot {
-            let count = self.laws[self.operators.blocks.material[block]].internal().len();
+            let count = self.laws[self.operators.blocks.material[block]].history_len();
             let points = match &self.operators.points {
                 Some(points) => points.count[block][lane] as usize,
                 None => self.operators.nodes(),
@@ -194,7 +195,7 @@ impl Scheme {
     fn pad(&self, state: &mut State) {
         let Some(points) = &self.operators.points else { return };
         for block in 0..self.histories.first.len().saturating_sub(1) {
-            let count = self.laws[self.operators.blocks.material[block]].internal().len();
+            let count = self.laws[self.operators.blocks.material[block]].history_len();
             let own = &mut state.internal[self.histories.first[block]..self.histories.first[block + 1]];
             for (lane, &real) in points.count[block].iter().enumerate() {
                 (real as usize * count..own.len()).for_each(|at| own[at].0[lane] = own[at % count].0[lane]);

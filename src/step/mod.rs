@@ -24,6 +24,8 @@ mod finish;
 mod flux;
 mod health;
 pub mod history;
+mod law;
+mod law_work;
 mod lift;
 mod loss;
 mod motion;
@@ -48,6 +50,7 @@ pub use correction::{Corrected, Correction, Made};
 pub use curl::Control;
 pub use energy::{EnergyMade, Totals};
 pub use history::Histories;
+pub use law::Law;
 pub use loss::{Loss, LossKind, Site};
 pub use motion::Motion;
 pub use phase::{Phase, Phases};
@@ -58,7 +61,6 @@ pub use sweeps::Sweeps;
 use crate::basis::TimeBasis;
 use crate::boundary::{Boundary, TimeNode};
 use crate::lane::{F8, Kernel};
-use crate::material::Law;
 use crate::operators::Operators;
 use crate::riemann::Flux;
 use crate::source::Source;
@@ -190,6 +192,8 @@ pub(crate) struct Stage<'a> {
     pub row: &'a [f64],
     /// Step, s.
     pub dt: f64,
+    /// From t_n to a Runge-Kutta stage, c_i dt, s; 0 for ADER, whose time nodes have their own.
+    pub elapsed: f64,
 }
 
 /// Runs `body` with the scratch of the current thread. Uncontended: a thread holds one block at a time.
@@ -223,7 +227,7 @@ impl Scheme {
                 // At most 7 nodes: on the stack, no allocation in a step.
                 let mut times = [TimeNode { time: 0.0, weight: 0.0 }; 8];
                 times.iter_mut().zip(basis.tau.iter().zip(&basis.weights)).for_each(|(t, n)| *t = node(n));
-                let stage = Stage { number: 0, times: &times[..basis.len()], row: &[], dt };
+                let stage = Stage { number: 0, times: &times[..basis.len()], row: &[], dt, elapsed: 0.0 };
                 self.on_all_blocks(&[stage], (state, survey), work, begin, finish);
             }
             Method::RungeKutta(tableau) => {
@@ -233,8 +237,10 @@ impl Scheme {
                 let summed = work.corrections.as_ref().is_some_and(|memory| memory.stage.is_some());
                 let rows = if summed { &[][..] } else { &tableau.a[..] };
                 let row = |number: usize| rows.get(number).map_or(&[][..], |row| &row[..]);
-                let stages: [Stage; MOST_STAGES] =
-                    std::array::from_fn(|number| Stage { number, times: &times[number], row: row(number), dt });
+                let stages: [Stage; MOST_STAGES] = std::array::from_fn(|number| {
+                    let elapsed = tableau.c.get(number).map_or(0.0, |c| c * dt);
+                    Stage { number, times: &times[number], row: row(number), dt, elapsed }
+                });
                 self.on_all_blocks(&stages[..tableau.stages()], (state, survey), work, begin, finish);
             }
         }

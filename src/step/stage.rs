@@ -2,13 +2,13 @@
 
 use super::block::Block;
 use super::history::recall;
+use super::law_work::LawWork;
 use super::sums::Terms;
 use super::volume;
 use crate::lane::{F8, Lanes, Work, store_array};
-use crate::material::{Law, Material};
+use crate::material::{Material, Past};
 use crate::state::{State, UNKNOWNS};
 use crate::tensor::DEFORMATION;
-use crate::with_law;
 
 impl Block<'_> {
     /// F, v and P of the stage at the nodes, from the state at t_n and dU/dt in earlier stages, [stage][component][node].
@@ -28,7 +28,8 @@ impl Block<'_> {
             }
         };
         let (mean, stress) = (&mut nodes.mean[..UNKNOWNS * n], &mut nodes.mean_stress[..DEFORMATION * n]);
-        kernel.run(AtNodes { law: self.law(), start, term, internal: self.internal(state), mean, stress });
+        let (internal, dt) = (self.internal(state), self.stage.elapsed);
+        self.law().block().stage(kernel, AtNodes { start, term, internal, dt, mean, stress });
     }
 }
 
@@ -51,33 +52,29 @@ impl Work for Sum<'_> {
 }
 
 /// A state at the nodes, and its Q.
-struct AtNodes<'a> {
-    /// The law.
-    pub law: &'a Law,
+pub(super) struct AtNodes<'a> {
     /// U^n, [component][node].
     pub start: &'a [F8],
     /// One term of the sum, factor and rate, as most tableaux have at each stage.
     pub term: Option<(f64, &'a [F8])>,
     /// Internal variables at t_n, [node][variable]; empty for a law without.
     pub internal: &'a [F8],
+    /// From t_n to the stage, s.
+    pub dt: f64,
     /// F and v, [node][6], out.
     pub mean: &'a mut [F8],
     /// P, [node][4], out.
     pub stress: &'a mut [F8],
 }
 
-impl Work for AtNodes<'_> {
+impl LawWork for AtNodes<'_> {
     type Out = ();
     #[inline(always)]
-    fn run<L: Lanes>(mut self) {
-        with_law!(self.law, law => {
-            // A copy: what is stored below cannot change it, so its constants stay in registers.
-            let law = *law;
-            match self.term {
-                None => self.with::<L, _, 0>(law, 0.0, &[]),
-                Some((factor, rate)) => self.with::<L, _, 1>(law, factor, rate),
-            }
-        });
+    fn run<L: Lanes, M: Material>(mut self, law: M) {
+        match self.term {
+            None => self.with::<L, _, 0>(law, 0.0, &[]),
+            Some((factor, rate)) => self.with::<L, _, 1>(law, factor, rate),
+        }
     }
 }
 
@@ -104,8 +101,8 @@ impl AtNodes<'_> {
             }
             let f = [u[0], u[1], u[2], u[3]];
             store_array([u[0], u[1], u[2], u[3], u[4] * inverse_density, u[5] * inverse_density], &mut mean[a]);
-            let mut internal = recall::<L, M>(&law, self.internal, a);
-            store_array(law.stress(f, &mut internal[..M::INTERNAL.len()]), &mut stress[a]);
+            let mut past = Past { history: recall::<L, M>(self.internal, a), dt: self.dt };
+            store_array(law.stress(f, &mut past), &mut stress[a]);
         }
     }
 }

@@ -3,16 +3,16 @@
 use super::at_points::{PointValues, at_points, remember};
 use super::health;
 use super::history::recall;
+use super::law_work::LawWork;
 use super::loss::{FacePoint, Loss};
 use super::volume::with_nodes;
 use super::worst::{Found, Worst};
 use super::{Phase, Scheme, Scratch, Work as Memory, with_scratch};
-use crate::lane::{self, F8, Lane, Lanes, Twin, Work};
-use crate::material::Material;
+use crate::lane::{self, F8, Lane, Lanes, Twin};
+use crate::material::{Material, Past, count, virgin};
 use crate::mesh::FACES;
 use crate::state::State;
 use crate::tensor::{self, DEFORMATION};
-use crate::with_law;
 use rayon::prelude::*;
 
 /// What a state tells before it is stepped.
@@ -50,7 +50,9 @@ impl Scheme {
                 let u = &state.u[stride * block..stride * (block + 1)];
                 let internal = self.histories.of(&state.internal, block);
                 let (mut worst, history) = (Worst::NONE, History::Now(internal));
-                self.kernel.run(Examine { scheme: self, block, u, history, scratch, speed, worst: &mut worst });
+                let law = &self.laws[blocks.material[block]];
+                let examine = Examine { scheme: self, block, u, history, scratch, speed, worst: &mut worst };
+                law.block().examine(self.kernel, examine);
                 worst
             })
         });
@@ -133,8 +135,8 @@ impl Scheme {
 pub(super) enum History<'a> {
     /// Those of the state that is looked at.
     Now(&'a [F8]),
-    /// Those of the state before the step; those after it are made here: h_(n+1) = law(F, h_n).
-    Before(&'a [F8], &'a mut [F8]),
+    /// Those of the state before the step; those after it are made here: h_(n+1) = law(F, h_n, dt), dt in s.
+    Before(&'a [F8], &'a mut [F8], f64),
 }
 
 /// Looks at a block: wave speeds and J at its points.
@@ -155,32 +157,29 @@ pub(super) struct Examine<'a> {
     pub worst: &'a mut Worst,
 }
 
-impl Work for Examine<'_> {
+impl LawWork for Examine<'_> {
     type Out = ();
     #[inline(always)]
-    fn run<L: Lanes>(self) {
+    fn run<L: Lanes, M: Material>(self, law: M) {
         let Self { scheme, block, u, history, scratch, speed, worst } = self;
         let mut clock = scratch.phases.clock();
-        let law = &scheme.laws[scheme.operators.blocks.material[block]];
         let (f, others) = u.split_at(DEFORMATION * scheme.operators.nodes());
         let at_nodes = match scheme.samples_at_nodes(block) {
             true => L::splat(f64::INFINITY),
-            false => with_nodes!(scheme.operators.line.m, M => health::smallest_j::<L, M>(f)),
+            false => with_nodes!(scheme.operators.line.m, N => health::smallest_j::<L, N>(f)),
         };
         let points = at_points::<L>(scheme, u, block, &mut scratch.nodes, &mut scratch.points);
-        let found = with_law!(law, law => {
-            let internal = match history {
-                History::Now(internal) => internal,
-                History::Before(before, after) => {
-                    remember::<L, _>(*law, &points, before, after);
-                    after
-                }
-            };
-            if scheme.curl.is_some() {
-                prestress::<L, _>(law, &points, internal).store(&mut speed.prestress);
+        let internal = match history {
+            History::Now(internal) => internal,
+            History::Before(before, after, dt) => {
+                remember::<L, _>(law, &points, before, after, dt);
+                after
             }
-            examine::<L, _>(law, &points, internal, at_nodes, others)
-        });
+        };
+        if scheme.curl.is_some() {
+            prestress::<L, _>(&law, &points, internal).store(&mut speed.prestress);
+        }
+        let found = examine::<L, _>(law, &points, internal, at_nodes, others);
         speed.fastest = found.speed;
         worst.see::<L>(found, block, scheme.operators.blocks.count[block]);
         scratch.phases.book(Phase::Survey, &mut clock);
@@ -205,7 +204,7 @@ impl<L: Lane> Extremes<L> {
 
     /// With a point.
     #[inline(always)]
-    fn see<M: Material>(&mut self, law: &M, f: [L; 4], internal: &[L]) {
+    fn see<M: Material>(&mut self, law: &M, f: [L; 4], internal: &M::History<L>) {
         let (squares, j) = (law.largest_squares(f, internal), tensor::det(f));
         self.fastest = self.fastest.max(squares[0]);
         self.slowest = self.slowest.min(squares[1]);
@@ -219,19 +218,19 @@ impl<L: Lane> Extremes<L> {
 /// mean over the points for one with memory. It only sets a rate, so that no weights are needed.
 #[inline(always)]
 fn prestress<L: Lanes, M: Material>(law: &M, points: &PointValues, internal: &[F8]) -> L {
-    if !M::GEOMETRIC {
+    if !M::OBJECTIVE {
         return L::zero();
     }
     let share = L::splat(1.0 / points.count as f64);
     let mut sum = [L::zero(); DEFORMATION];
     for p in 0..points.count {
         let f = points.at::<L>(p);
-        let part = if M::INTERNAL.is_empty() { f } else { kirchhoff(law, f, &mut recall::<L, M>(law, internal, p)) };
+        let part = if count::<M>() == 0 { f } else { kirchhoff(law, f, recall::<L, M>(internal, p)) };
         for k in 0..DEFORMATION {
             sum[k] = part[k].mul_add(share, sum[k]);
         }
     }
-    let tau = if M::INTERNAL.is_empty() { kirchhoff(law, sum, &mut []) } else { sum };
+    let tau = if count::<M>() == 0 { kirchhoff(law, sum, virgin::<L, M>()) } else { sum };
     let [largest, smallest] = tensor::eigenvalues(tau[0], L::splat(0.5) * (tau[1] + tau[2]), tau[3]);
     let mean = L::splat(0.5) * (largest + smallest);
     let s = L::zero().max(-smallest).max(mean - L::splat(law.shear_modulus()));
@@ -240,24 +239,21 @@ fn prestress<L: Lanes, M: Material>(law: &M, points: &PointValues, internal: &[F
 
 /// tau = P F^T.
 #[inline(always)]
-fn kirchhoff<L: Lane, M: Material>(law: &M, f: [L; 4], internal: &mut [L]) -> [L; 4] {
-    tensor::times_transposed(law.stress(f, &mut internal[..M::INTERNAL.len()]), f)
+fn kirchhoff<L: Lane, M: Material>(law: &M, f: [L; 4], history: M::History<L>) -> [L; 4] {
+    tensor::times_transposed(law.stress(f, &mut Past::now(history)), f)
 }
 
 /// Looks at F at the points and at what else must be finite; `at_nodes` is the smallest J there.
 #[inline(always)]
-fn examine<L: Lanes, M: Material>(law: &M, points: &PointValues, internal: &[F8], at_nodes: L, others: &[F8]) -> Found {
-    // A copy: its constants stay in registers.
-    let law = *law;
+fn examine<L: Lanes, M: Material>(law: M, points: &PointValues, internal: &[F8], at_nodes: L, others: &[F8]) -> Found {
     // Two points at a time, where none brings numbers of its own.
-    let pairs = if M::INTERNAL.is_empty() { points.count / 2 } else { 0 };
+    let pairs = if count::<M>() == 0 { points.count / 2 } else { 0 };
     let (mut twins, mut seen) = (Extremes::<Twin<L>>::new(), Extremes::<L>::new());
     for pair in 0..pairs {
-        twins.see(&law, lane::twins(points.at::<L>(2 * pair), points.at::<L>(2 * pair + 1)), &[]);
+        twins.see(&law, lane::twins(points.at::<L>(2 * pair), points.at::<L>(2 * pair + 1)), &virgin::<Twin<L>, M>());
     }
     for p in 2 * pairs..points.count {
-        let internal = recall::<L, M>(&law, internal, p);
-        seen.see(&law, points.at::<L>(p), &internal[..M::INTERNAL.len()]);
+        seen.see(&law, points.at::<L>(p), &recall::<L, M>(internal, p));
     }
     // Four sums that do not wait for each other.
     let mut poison = [twins.poison.0, twins.poison.1, seen.poison, L::zero()];

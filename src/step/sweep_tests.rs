@@ -96,7 +96,16 @@ fn one_evaluation_from_the_constant_guess_is_as_good_as_one_at_every_node() {
         let mut every = one.clone();
         let len = time.len();
         // All nodes of the first sweep at U^n: rows of zeros from the single node before.
-        every.inner.insert(1, sweeps::Sweep { to: len, from: 1, rates: vec![0.0; len], sources: vec![0.0; len * len] });
+        every.inner.insert(
+            1,
+            sweeps::Sweep {
+                to: len,
+                tau: time.tau.clone(),
+                from: 1,
+                rates: vec![0.0; len],
+                sources: vec![0.0; len * len],
+            },
+        );
         every.inner[2] = sweeps::Sweep { to: len, from: len, rates: time.integration.clone(), ..one.inner[1].clone() };
         let states = [one, every].map(|sweeps| {
             let method = Method::Ader { sweeps, time: time.clone() };

@@ -8,6 +8,8 @@ use crate::basis::{Lagrange, TimeBasis};
 pub struct Sweep {
     /// Time nodes that it maps to.
     pub to: usize,
+    /// tau of each of them.
+    pub tau: Vec<f64>,
     /// Time nodes of the sweep before; 0 for the constant guess u = U^n.
     pub from: usize,
     /// W, `[to][from]`.
@@ -40,8 +42,9 @@ impl Sweeps {
             return Self::new(time, vec![guess(len)]);
         }
         let (at, tau) = (time.integration.clone(), time.tau.clone());
-        let mut sweeps = vec![guess(len), Sweep { to: len, from: 1, rates: tau, sources: at.clone() }];
-        sweeps.resize(count.max(1) + 1, Sweep { to: len, from: len, rates: at.clone(), sources: at });
+        let mut sweeps =
+            vec![guess(len), Sweep { to: len, tau: tau.clone(), from: 1, rates: tau.clone(), sources: at.clone() }];
+        sweeps.resize(count.max(1) + 1, Sweep { to: len, tau, from: len, rates: at.clone(), sources: at });
         Self::new(time, sweeps)
     }
 
@@ -53,7 +56,7 @@ impl Sweeps {
         let rungs = (1..len).map(|j| {
             let to = Lagrange::new(j).nodes;
             let rates = integrals(j, &to);
-            Sweep { to: j + 1, from: j, rates, sources: integrals(len, &to) }
+            Sweep { to: j + 1, from: j, rates, sources: integrals(len, &to), tau: to }
         });
         Self::new(time, std::iter::once(guess(len)).chain(rungs).collect())
     }
@@ -88,7 +91,7 @@ impl Sweeps {
 
 /// u = U^n at one node, without sources.
 fn guess(times: usize) -> Sweep {
-    Sweep { to: 1, from: 0, rates: vec![], sources: vec![0.0; times] }
+    Sweep { to: 1, tau: vec![0.0], from: 0, rates: vec![], sources: vec![0.0; times] }
 }
 
 /// int_0^tau l_k for each tau (rows) and each Lagrange polynomial of the `count`-node Gauss rule (columns).

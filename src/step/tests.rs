@@ -31,7 +31,7 @@ impl Boundary for Given {
 }
 
 pub(super) fn steel() -> Law {
-    Law::NeoHookean(NeoHookean::new(1.0, 0.3, 1.3))
+    Law::new(NeoHookean::new(1.0, 0.3, 1.3))
 }
 
 pub(super) fn distorted(cells: usize) -> Mesh {
@@ -215,7 +215,7 @@ pub(super) fn chessboard(mesh: &Mesh, kind: Kind) -> (Scheme, Vec<f64>) {
     let sampling = if kind == Kind::AderDgfem { Some(Sampling::Nodes) } else { sampling };
     let needs = Needs { degree: 2, sampling, curl_free: true };
     let operators = Operators::build(mesh, &links(mesh).unwrap(), &material, &needs).unwrap();
-    let heavy = Law::NeoHookean(NeoHookean::new(3.0, 0.2, 9.0));
+    let heavy = Law::new(NeoHookean::new(3.0, 0.2, 9.0));
     let densities = material.iter().map(|&m| if m == 0 { 1.3 } else { 9.0 }).collect();
     (Scheme { operators, laws: vec![steel(), heavy], ..base }, densities)
 }

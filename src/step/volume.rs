@@ -3,15 +3,15 @@
 //! F rows in strong form (D v; `finish` adds the lifted jump of v), exact on uniform states; p rows in weak form. Both
 //! are exact integrals on bilinear cells, so the two forms agree there to rounding.
 
+use super::law_work::LawWork;
 use super::worst::Worst;
 use crate::lane::{F8, Lane, Lanes, Twin, Work, load_array, store_array, twins};
-use crate::material::{Law, Material};
+use crate::material::Material;
 use crate::mesh::FACES;
 use crate::operators::{Line, Metric, determinant};
 use crate::riemann::{Looks, tangent};
 use crate::state::UNKNOWNS;
 use crate::tensor::{self, AXES, DEFORMATION};
-use crate::with_law;
 
 /// Runs `$body` with `$nodes` bound to the constant M = N + 1: loops over the nodes of a line are unrolled. One `match` a
 /// block and kernel.
@@ -308,8 +308,6 @@ impl<const M: usize, const METERED: bool> Traces<'_, M, METERED> {
 /// The speeds of all traces: those of the averaged F. W numbers a trace, see [`width`]; c_s where the flux is one that looks
 /// at it.
 pub struct Speeds<'a> {
-    /// The law.
-    pub law: &'a Law,
     /// The block.
     pub metric: &'a Metric<F8>,
     /// Numbers of a trace, see [`width`].
@@ -323,23 +321,19 @@ pub struct Speeds<'a> {
     pub worst: Option<(&'a mut Worst, usize)>,
 }
 
-impl Work for Speeds<'_> {
+impl LawWork for Speeds<'_> {
     /// Whether a J is not above 0.
     type Out = bool;
     #[inline(always)]
-    fn run<L: Lanes>(mut self) -> bool {
-        let smallest = with_law!(self.law, law => {
-            // A copy: what is stored below cannot change it, so its constants stay in registers.
-            let law = *law;
-            match (self.looks, self.width == width(self.looks, true)) {
-                (Looks::Nothing, false) => self.of_pressure::<L, _, { width(Looks::Nothing, false) }>(law),
-                (Looks::Nothing, true) => self.of_pressure::<L, _, { width(Looks::Nothing, true) }>(law),
-                (Looks::Shear, false) => self.of_both::<L, _, { width(Looks::Shear, false) }>(law),
-                (Looks::Shear, true) => self.of_both::<L, _, { width(Looks::Shear, true) }>(law),
-                (Looks::Displacement, false) => self.of_pressure::<L, _, { width(Looks::Displacement, false) }>(law),
-                (Looks::Displacement, true) => self.of_pressure::<L, _, { width(Looks::Displacement, true) }>(law),
-            }
-        });
+    fn run<L: Lanes, M: Material>(mut self, law: M) -> bool {
+        let smallest = match (self.looks, self.width == width(self.looks, true)) {
+            (Looks::Nothing, false) => self.of_pressure::<L, _, { width(Looks::Nothing, false) }>(law),
+            (Looks::Nothing, true) => self.of_pressure::<L, _, { width(Looks::Nothing, true) }>(law),
+            (Looks::Shear, false) => self.of_both::<L, _, { width(Looks::Shear, false) }>(law),
+            (Looks::Shear, true) => self.of_both::<L, _, { width(Looks::Shear, true) }>(law),
+            (Looks::Displacement, false) => self.of_pressure::<L, _, { width(Looks::Displacement, false) }>(law),
+            (Looks::Displacement, true) => self.of_pressure::<L, _, { width(Looks::Displacement, true) }>(law),
+        };
         match self.worst {
             Some((worst, cells)) => worst.see_faces::<L>(smallest, cells),
             None => false,

@@ -52,12 +52,12 @@ impl Finer {
         compare(&self.built.body.mesh, order, &|cell| own.law(cell), &|cell, xi, x| {
             let expected = own.at(cell, xi);
             // A point of the body that another mesh of it lacks would show as an error that is not a number.
-            let nothing = ([f64::NAN; 4], [f64::NAN; 2], expected.internal);
+            let nothing = ([f64::NAN; 4], [f64::NAN; 2], expected.history.clone());
             let found = locator.find(x).map_or(nothing, |(cell, xi)| {
                 let point = other.at(cell, xi);
-                (point.deformation, point.velocity, point.internal)
+                (point.deformation, point.velocity, point.history)
             });
-            [found, (expected.deformation, expected.velocity, expected.internal)]
+            [found, (expected.deformation, expected.velocity, expected.history)]
         })
     }
 }

@@ -1,7 +1,8 @@
 //! Problems whose solution is known: what is solved, up to when, and how.
 
 use dgmpm::exact::{Dual, Exact, Manufactured};
-use dgmpm::material::{Law, Material, NeoHookean};
+use dgmpm::material::{Material, NeoHookean, Past};
+use dgmpm::step::Law;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -26,14 +27,14 @@ fn unit_law() -> NeoHookean {
 
 /// Strain of 5 % about F = 1, period 1.
 pub fn manufactured(end: f64, alpha: f64) -> Problem {
-    let law = Law::NeoHookean(unit_law());
+    let law = Law::new(unit_law());
     let exact = Arc::new(Manufactured::new(law.clone(), 0.05, 1.0));
     Problem { law, exact, periodic: vec![[0, 1], [2, 3]], end, safety: 0.85, alpha: Some(alpha) }
 }
 
 /// Waves of strain `amplitude` about the uniform state F = `stretch` times the unit tensor, period 1.
 pub fn prestrained(stretch: f64, amplitude: f64, end: f64, alpha: Option<f64>) -> Problem {
-    let law = Law::NeoHookean(unit_law());
+    let law = Law::new(unit_law());
     let exact = Arc::new(Prestrained { law: unit_law(), stretch, amplitude });
     Problem { law, exact, periodic: vec![[0, 1], [2, 3]], end, safety: 0.85, alpha }
 }
@@ -76,7 +77,7 @@ impl Exact for Prestrained {
     fn body_force(&self, x: [f64; 2], t: f64) -> Option<[f64; 2]> {
         // Derivatives along X1, then X2, through the code of the law.
         let along = |a: usize| [0, 1].map(|k| Dual::new(x[k], if k == a { 1.0 } else { 0.0 }));
-        let [first, second] = [0, 1].map(|a| self.law.stress(self.gradient(along(a), t), &mut []));
+        let [first, second] = [0, 1].map(|a| self.law.stress(self.gradient(along(a), t), &mut Past::now([])));
         let inertia = -self.amplitude * TAU * (TAU * t + 0.3).cos();
         let u = shape(x);
         let density = self.law.density();

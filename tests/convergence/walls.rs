@@ -6,13 +6,14 @@ use crate::solve::{Kind, MIDPOINTS, advanced, alone, scheme};
 use crate::table::{Row, hold};
 use dgmpm::boundary::Wall;
 use dgmpm::exact::{Exact, SimpleWave};
-use dgmpm::material::{Law, NeoHookean};
+use dgmpm::material::NeoHookean;
 use dgmpm::run::norms;
+use dgmpm::step::Law;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
 fn steel(end: f64, exact: impl FnOnce(&Law) -> Arc<dyn Exact>) -> Problem {
-    let law = Law::NeoHookean(NeoHookean::new(2e11, 0.3, 7800.0));
+    let law = Law::new(NeoHookean::new(2e11, 0.3, 7800.0));
     Problem { exact: exact(&law), law, periodic: vec![], end, safety: 0.9, alpha: Some(3.0) }
 }
 

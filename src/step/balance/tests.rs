@@ -2,11 +2,12 @@
 //! run.
 use super::*;
 use crate::boundary::{Absorbing, Boundary, Data, Free, Traction, Velocity, Wall};
-use crate::material::{Law, LinearElastic};
+use crate::material::LinearElastic;
 use crate::mesh::Mesh;
 use crate::riemann::Flux;
 use crate::source::BodyForce;
 use crate::state::State;
+use crate::step::Law;
 use crate::step::tests::{KINDS, Kind, chessboard, distorted, midpoints, noise, scheme, state, steel, wall, wavy};
 use crate::step::{Method, Motion, Tableau};
 use std::sync::Arc;
@@ -71,7 +72,7 @@ fn small_steps_lose_what_jumps_take_for_any_flux_and_condition() {
     let mesh = distorted(3);
     for (name, boundary) in CONDITIONS {
         for flux in [Flux::Rusanov, Flux::Acoustic, Flux::AcousticCurl] {
-            for law in [steel(), Law::Linear(LinearElastic::new(1.0, 0.3, 1.3))] {
+            for law in [steel(), Law::new(LinearElastic::new(1.0, 0.3, 1.3))] {
                 let what = format!("{name}, {flux:?}, {law:?}");
                 let scheme = Scheme { flux, laws: vec![law], ..rk4(&mesh, 2, boundary) };
                 let mut state = state(&mesh, &scheme, rough);

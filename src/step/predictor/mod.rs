@@ -10,7 +10,7 @@ pub mod transfer;
 use super::history::recall;
 use super::{Method, Sweeps};
 use crate::lane::{self, Coefficient, F8, Kernel, Lane, Lanes, Twin, load_array, store_array};
-use crate::material::Material;
+use crate::material::{Material, Past, count, virgin};
 use crate::operators::PointMatrices;
 use crate::state::UNKNOWNS;
 use crate::tensor::{AXES, DEFORMATION};
@@ -96,10 +96,10 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
                 let Arrays { start, shifted, rates: [before, _], q, .. } = arrays;
                 let base = if shifted.is_empty() { &start[..UNKNOWNS * np] } else { &shifted[..UNKNOWNS * np] };
                 self.row(&sweep.rates[s * sweep.from..(s + 1) * sweep.from], &mut row);
-                let rows = &row[..sweep.from];
+                let (rows, dt) = (&row[..sweep.from], sweep.tau[s] * self.dt);
                 match constant {
-                    Some(metric) => self.sample::<L>(base, before, rows, Turned(metric), q),
-                    None => self.sample::<L>(base, before, rows, Plain, q),
+                    Some(metric) => self.sample::<L>(base, before, rows, dt, Turned(metric), q),
+                    None => self.sample::<L>(base, before, rows, dt, Plain, q),
                 }
                 if self.matrices.is_overdetermined() {
                     self.fit(arrays);
@@ -164,23 +164,23 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
     }
 
-    /// u = U^n + dt sum_k W[k] r_k at one time node, and Q of it. F and the law first, then v: together they would need
+    /// u = U^n + dt sum_k W[k] r_k at one time node, `dt` after t_n, and Q of it. F and the law first, then v: together they would need
     /// more registers than there are.
     #[inline(always)]
-    fn sample<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], turn: impl Turn<L>, q: &mut [F8]) {
+    fn sample<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], dt: f64, turn: impl Turn<L>, q: &mut [F8]) {
         // Four points of the first sweep, as at degree 1, by themselves: all loops are unrolled.
         match (base.len(), row) {
-            (24, []) => self.sample_of::<L>(&base[..24], before, &[], turn, q),
-            _ => self.sample_of::<L>(base, before, row, turn, q),
+            (24, []) => self.sample_of::<L>(&base[..24], before, &[], dt, turn, q),
+            _ => self.sample_of::<L>(base, before, row, dt, turn, q),
         }
     }
 
     /// [`Predictor::sample`] for lengths that may be constants.
     #[inline(always)]
-    fn sample_of<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], turn: impl Turn<L>, q: &mut [F8]) {
+    fn sample_of<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], dt: f64, turn: impl Turn<L>, q: &mut [F8]) {
         let (base, before) = (base.as_chunks::<UNKNOWNS>().0, before.as_chunks::<UNKNOWNS>().0);
         let q = &mut q.as_chunks_mut::<UNKNOWNS>().0[..base.len()];
-        let twins = if M::INTERNAL.is_empty() { base.len() / 2 * 2 } else { 0 };
+        let twins = if count::<M>() == 0 { base.len() / 2 * 2 } else { 0 };
         let (pairs, rest) = q.split_at_mut(twins);
         for (pair, q) in pairs.as_chunks_mut::<2>().0.iter_mut().enumerate() {
             let p = 2 * pair;
@@ -188,14 +188,14 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
                 state::<L, 0, DEFORMATION>(base, before, row, p),
                 state::<L, 0, DEFORMATION>(base, before, row, p + 1),
             );
-            let [one, two] = lane::apart(self.law.stress(f, &mut []));
+            let [one, two] = lane::apart(self.law.stress(f, &mut Past::now(virgin::<Twin<L>, M>())));
             put::<L>(turn.apply(one), &mut q[0]);
             put::<L>(turn.apply(two), &mut q[1]);
         }
         for (k, q) in rest.iter_mut().enumerate() {
             let f = state::<L, 0, DEFORMATION>(base, before, row, twins + k);
-            let mut internal = recall::<L, M>(self.law, self.internal, twins + k);
-            put::<L>(turn.apply(self.law.stress(f, &mut internal[..M::INTERNAL.len()])), q);
+            let mut past = Past { history: recall::<L, M>(self.internal, twins + k), dt };
+            put::<L>(turn.apply(self.law.stress(f, &mut past)), q);
         }
         let q = &mut q[..base.len()];
         let inverse_density = L::splat(1.0 / self.law.density());
@@ -228,7 +228,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
         // Two points at a time as in `sample`. Sources do not act on F: from U^n itself.
         let mean_stress = &mut mean_stress.as_chunks_mut::<DEFORMATION>().0[..np];
-        let (rows, twins) = (&rows[..to], if M::INTERNAL.is_empty() { np / 2 * 2 } else { 0 });
+        let (rows, twins) = (&rows[..to], if count::<M>() == 0 { np / 2 * 2 } else { 0 });
         let (pairs, rest) = mean_stress.split_at_mut(twins);
         for (pair, mean_stress) in pairs.as_chunks_mut::<2>().0.iter_mut().enumerate() {
             let p = 2 * pair;
@@ -239,7 +239,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
                     state::<L, 0, DEFORMATION>(start, before, row, p),
                     state::<L, 0, DEFORMATION>(start, before, row, p + 1),
                 );
-                add(*weight, self.law.stress(f, &mut []), &mut sum);
+                add(*weight, self.law.stress(f, &mut Past::now(virgin::<Twin<L>, M>())), &mut sum);
             }
             let [one, two] = lane::apart(sum);
             store_array(one, &mut mean_stress[0]);
@@ -247,10 +247,10 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
         for (k, mean_stress) in rest.iter_mut().enumerate() {
             let (p, mut sum) = (twins + k, [L::zero(); DEFORMATION]);
-            for (row, weight) in rows.iter().zip(self.weights) {
+            for ((row, weight), tau) in rows.iter().zip(self.weights).zip(&last.tau) {
                 let f = state::<L, 0, DEFORMATION>(start, before, &row[..from], p);
-                let mut internal = recall::<L, M>(self.law, self.internal, p);
-                add(*weight, self.law.stress(f, &mut internal[..M::INTERNAL.len()]), &mut sum);
+                let mut past = Past { history: recall::<L, M>(self.internal, p), dt: tau * self.dt };
+                add(*weight, self.law.stress(f, &mut past), &mut sum);
             }
             store_array(sum, mean_stress);
         }

@@ -1,6 +1,6 @@
 //! Forward-mode differentiation: numbers that carry their derivative through the code of a law.
 
-use crate::lane::Lane;
+use super::Lane;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// value + slope e with e^2 = 0: every operation carries the derivative along one direction.
