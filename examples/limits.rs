@@ -6,14 +6,15 @@
 
 use dgmpm::basis::TimeBasis;
 use dgmpm::boundary::{Boundary, Wall};
-use dgmpm::lane::Kernel;
 use dgmpm::material::NeoHookean;
 use dgmpm::mesh::{links, rectangle};
 use dgmpm::operators::{Needs, Operators, Sampling};
-use dgmpm::riemann::Flux;
+use dgmpm::riemann::Rusanov;
 use dgmpm::state::State;
+use dgmpm::step::Flux;
 use dgmpm::step::Law;
-use dgmpm::step::{Control, Histories, Method, Motion, Relax, Scheme, Sweeps, Tableau};
+use dgmpm::step::{Control, Method, Motion, Relax, Scheme, Sweeps, Tableau};
+use std::sync::Arc;
 
 const CELLS: usize = 4;
 
@@ -67,18 +68,13 @@ fn scheme(method: Method, degree: usize) -> Result<Scheme, Box<dyn std::error::E
     let needs = Needs { degree, sampling, curl_free: degree > 0 };
     let operators = Operators::build(&mesh, &links(&mesh)?, &vec![0; mesh.cells.len()], &needs)?;
     let alpha = if degree >= 4 { 6.0 } else { 3.0 };
-    Ok(Scheme {
-        operators,
-        laws: vec![Law::new(NeoHookean::new(1.0, 0.3, 1.0))],
-        histories: Histories::default(),
-        method,
-        flux: Flux::Rusanov,
-        boundaries: (0..4).map(|_| Box::new(Wall { speed: None }) as Box<dyn Boundary>).collect(),
-        sources: vec![],
-        corrections: vec![],
-        curl: (degree > 0).then_some(Control { relax: Relax::Gradient, rate: alpha * degree as f64 }),
-        kernel: Kernel::widest(),
-    })
+    let laws = vec![Law::new(NeoHookean::new(1.0, 0.3, 1.0))];
+    let boundaries = (0..4).map(|_| Arc::new(Wall { speed: None }) as Arc<dyn Boundary>).collect();
+    let scheme = Scheme::new(operators, laws, method, Flux::new(Rusanov), boundaries)?;
+    match degree {
+        0 => Ok(scheme),
+        _ => Ok(scheme.with_curl(Control { relax: Relax::Gradient, rate: alpha * degree as f64 })?),
+    }
 }
 
 /// The largest stable dt c / h to 1.5 %.

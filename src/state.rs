@@ -24,6 +24,8 @@ pub struct State {
     /// Internal variables of blocks whose law has some, `[block][point][variable]` at the points where the law is evaluated
     /// between steps ([`crate::step::Histories`]); empty where no law has any.
     pub internal: Vec<F8>,
+    /// The memory of boundary conditions ([`crate::boundary::Boundary::memory`]); empty where none has any.
+    pub boundary: Vec<f64>,
     /// The displacement that a grid of this run began with, `[block][component][node]`, whose jumps are not held: they are those of
     /// the projection. Empty on the first grid.
     pub unheld: Vec<F8>,
@@ -39,6 +41,7 @@ impl State {
             components,
             u: blocks.pack(cells, components * nodes, rest),
             internal: vec![],
+            boundary: vec![],
             unheld: vec![],
         }
     }

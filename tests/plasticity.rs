@@ -14,6 +14,7 @@ use dgmpm::step::{Corrected, Correction, Made, Motion, Scheme};
 use runs::run;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
 use vtkio::model::{Attribute, DataSet, Vtk};
 
 const METHODS: [&str; 3] = ["ader-dgmpm", "ader-dgfem", "rk-dgfem"];
@@ -296,7 +297,7 @@ impl Correction for Harden {
 #[test]
 fn a_correction_from_outside_the_crate_sees_and_changes_the_memory_of_the_material() {
     for method in METHODS {
-        let march = |corrections: Vec<Box<dyn Correction>>| {
+        let march = |corrections: Vec<Arc<dyn Correction>>| {
             let sets = [&format!("scheme.method={method}"), "mesh.rectangle.cells=[24,8]"];
             let mut march = March::new(&sets, Kernel::widest());
             march.scheme.corrections = corrections;
@@ -305,9 +306,9 @@ fn a_correction_from_outside_the_crate_sees_and_changes_the_memory_of_the_materi
         };
         let plain = march(vec![]);
         for after_stages in [false, true] {
-            let same = march(vec![Box::new(Harden { by: 0.0, after_stages })]);
+            let same = march(vec![Arc::new(Harden { by: 0.0, after_stages })]);
             assert!(same.bits() == plain.bits() && same.motion.survey == plain.motion.survey, "{method}");
-            let other = march(vec![Box::new(Harden { by: 1e-3, after_stages })]);
+            let other = march(vec![Arc::new(Harden { by: 1e-3, after_stages })]);
             let more = other.internal().iter().zip(plain.internal()).map(|(a, b)| a[4] - b[4]).collect::<Vec<_>>();
             // After five steps 5e-3 at the points of eight cells, less what flows less there (1e-6); elsewhere what the waves carry.
             let changed = more.iter().filter(|more| (**more - 5e-3).abs() < 1e-5).count();

@@ -1,6 +1,6 @@
 //! Free surface.
 
-use super::{Boundary, FacePoint, TimeNode};
+use super::{Boundary, FacePoint, Moment};
 use crate::riemann::{Trace, star};
 
 /// t* = 0, v* = v - Z^-1 t: the outgoing characteristic is kept. (With theta/z_p for Z^-1 a square that spins loses three times as much.)
@@ -8,7 +8,7 @@ use crate::riemann::{Trace, star};
 pub struct Free;
 
 impl Boundary for Free {
-    fn flux(&self, inside: &Trace<f64>, at: &FacePoint, _: &[TimeNode]) -> [f64; 6] {
+    fn flux(&self, inside: &Trace<f64>, at: &FacePoint, _: &Moment, _: &mut [f64]) -> [f64; 6] {
         let dv = at.characteristic(inside).solve(inside.t);
         star([inside.v[0] - dv[0], inside.v[1] - dv[1]], [0.0; 2], at.normal)
     }

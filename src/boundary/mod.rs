@@ -1,6 +1,6 @@
 //! Boundary conditions as star states (v*, t*) of a face point, for every interface flux.
 //!
-//! A new condition is one file with a type that implements [`Boundary`] and its line in the scene's registry.
+//! A new condition is one file with a type that implements [`Boundary`] and its entry in the registry of scenes.
 
 mod absorbing;
 mod free;
@@ -58,15 +58,32 @@ impl FacePoint {
     }
 }
 
-/// A boundary condition. Conditions with a memory (a gap) keep it in the state, not here.
+/// When a condition is evaluated.
+#[derive(Debug, Clone, Copy)]
+pub struct Moment<'a> {
+    /// The time nodes over which data that depends on time is averaged.
+    pub times: &'a [TimeNode],
+    /// What this evaluation counts in the step, s: dt for ADER, b_i dt for stage i of Runge-Kutta. A memory that follows a rate
+    /// grows by `dt` times the rate.
+    pub dt: f64,
+}
+
+/// A boundary condition.
 pub trait Boundary: Send + Sync {
-    /// Flux*.N at a face point, in the order of U.
-    fn flux(&self, inside: &Trace<f64>, at: &FacePoint, times: &[TimeNode]) -> [f64; 6];
+    /// The numbers that the condition keeps at each point of its faces, at the start of a run: a gap, a slip. None by default.
+    /// They are part of the state: snapshots hold them, another grid takes those of the nearest point.
+    fn memory(&self) -> &[f64] {
+        &[]
+    }
+
+    /// Flux*.N at a face point, in the order of U. Called once a point and stage. `memory` are the numbers of that point, as the
+    /// stage before has left them.
+    fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, memory: &mut [f64]) -> [f64; 6];
 }
 
 /// sum_s w_s data(X, t_s).
-fn mean(data: &Data, x: [f64; 2], times: &[TimeNode]) -> f64 {
-    times.iter().map(|node| node.weight * data(x, node.time)).sum()
+fn mean(data: &Data, x: [f64; 2], when: &Moment) -> f64 {
+    when.times.iter().map(|node| node.weight * data(x, node.time)).sum()
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Frictionless bilateral wall, moving or not; at rest it is the plane of symmetry.
 
-use super::{Boundary, Data, FacePoint, TimeNode, mean};
+use super::{Boundary, Data, FacePoint, Moment, mean};
 use crate::riemann::{Dual, Trace, star, tangent};
 use crate::tensor::dot;
 
@@ -18,9 +18,9 @@ pub struct Wall {
 const IMAGE: f64 = 2.0;
 
 impl Boundary for Wall {
-    fn flux(&self, inside: &Trace<f64>, at: &FacePoint, times: &[TimeNode]) -> [f64; 6] {
+    fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, _: &mut [f64]) -> [f64; 6] {
         let (n, t) = (at.normal, tangent(at.normal));
-        let wall = self.speed.as_ref().map_or(0.0, |speed| mean(speed, at.x, times));
+        let wall = self.speed.as_ref().map_or(0.0, |speed| mean(speed, at.x, when));
         // The wall pushes against v.N - v_w > 0, so that the traction along N falls.
         let pressure = dot(inside.t, n) - at.impedance(inside) * (dot(inside.v, n) - wall);
         let slip = dot(inside.v, t) - at.admittance(inside) * dot(inside.t, t);

@@ -58,7 +58,7 @@ pub trait Exact: Send + Sync {
 pub struct ExactForce(pub Arc<dyn Exact>);
 
 impl Source for ExactForce {
-    fn acceleration(&self, x: [f64; 2], time: f64, _: usize) -> [f64; 2] {
+    fn acceleration(&self, x: [f64; 2], time: f64, _: [f64; 2], _: usize) -> [f64; 2] {
         self.0.body_force(x, time).unwrap_or_default()
     }
 }

@@ -4,7 +4,8 @@
 //! Arrays, with M = degree + 1: `time` in s and `step`; `u` (cells, 6, M, M), the grid unknowns F11, F12, F21, F22, p1,
 //! p2 at the Gauss nodes (node i along xi1, j along xi2); `displacement` (cells, 2, M, M) or empty; `internal` (n), the
 //! internal variables point by point: cells in the order of the mesh, points in that of the cloud (nodes a = i M + j for
-//! ADER-DGFEM and RK-DGFEM), variables in that of the cell's law, which may have none. Attributes `mesh`,
+//! ADER-DGFEM and RK-DGFEM), variables in that of the cell's law, which may have none; `boundary` (n), the memory of boundary
+//! conditions, likewise. Attributes `mesh`,
 //! `cloud`: the files of the run folder that the state lives on.
 
 use std::path::{Path, PathBuf};
@@ -35,6 +36,9 @@ pub struct Snapshot {
     pub unheld: Vec<f64>,
     /// Internal variables `[cell][point][variable]`, none for cells of elastic laws.
     pub internal: Vec<f64>,
+    /// The memory of boundary conditions, cells in the order of the mesh, faces, points along the face, numbers; none for
+    /// conditions without memory.
+    pub boundary: Vec<f64>,
     /// The files of its grid.
     pub grid: GridFiles,
 }
@@ -111,15 +115,19 @@ impl Snapshot {
         let side = self.degree + 1;
         let moved = if self.displacement.is_empty() { 0 } else { self.cells() };
         let unheld = if self.unheld.is_empty() { 0 } else { self.cells() };
-        let arrays = [
-            ("time", vec![], ArrayRef::F64(&[self.time])),
-            ("step", vec![1], ArrayRef::Index(&[self.step])),
-            ("degree", vec![1], ArrayRef::Index(&[self.degree])),
+        let (time, step, degree) = ([self.time], [self.step], [self.degree]);
+        let mut arrays = vec![
+            ("time", vec![], ArrayRef::F64(&time)),
+            ("step", vec![1], ArrayRef::Index(&step)),
+            ("degree", vec![1], ArrayRef::Index(&degree)),
             ("u", vec![self.cells(), UNKNOWNS, side, side], ArrayRef::F64(&self.u)),
             ("displacement", vec![moved, 2, side, side], ArrayRef::F64(&self.displacement)),
             ("unheld", vec![unheld, 2, side, side], ArrayRef::F64(&self.unheld)),
             ("internal", vec![self.internal.len()], ArrayRef::F64(&self.internal)),
         ];
+        if !self.boundary.is_empty() {
+            arrays.push(("boundary", vec![self.boundary.len()], ArrayRef::F64(&self.boundary)));
+        }
         write_arrays(path, FORMAT, &[("mesh", self.grid.mesh.clone()), ("cloud", self.grid.cloud.clone())], &arrays)
     }
 
@@ -139,12 +147,15 @@ impl Snapshot {
         let name = |key: &str, usual: String| store.attribute(key).map_or(usual, str::to_owned);
         let GridFiles { mesh, cloud } = GridFiles::default();
         let grid = GridFiles { mesh: name("mesh", mesh), cloud: name("cloud", cloud) };
-        // Files of earlier versions have no such array.
-        let known = store.names().any(|name| name == "unheld");
-        let unheld = if known { store.reals("unheld", &[2, side, side])? } else { vec![] };
+        // Files of earlier versions have no `unheld`, and those of runs without such a memory no `boundary`.
+        let knows = |name: &str| store.names().any(|known| known == name);
+        let known = [knows("unheld"), knows("boundary")];
+        let unheld = if known[0] { store.reals("unheld", &[2, side, side])? } else { vec![] };
+        let boundary = if known[1] { store.reals("boundary", &[])? } else { vec![] };
         Ok(Self {
             grid,
             unheld,
+            boundary,
             time: store.real("time")?,
             step,
             degree,

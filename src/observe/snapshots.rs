@@ -60,7 +60,7 @@ pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
         true => vec![],
         false => scheme.operators.blocks.unpack(&state.unheld, 2 * n),
     };
-    let internal = scheme.internal_of(state);
+    let (internal, boundary) = (scheme.internal_of(state), scheme.boundary_memory_of(state));
     let (time, step, degree) = (state.time, state.step, scheme.operators.degree);
-    Snapshot { time, step, degree, u, displacement, unheld, internal, ..Snapshot::default() }
+    Snapshot { time, step, degree, u, displacement, unheld, internal, boundary, ..Snapshot::default() }
 }

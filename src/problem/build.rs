@@ -12,7 +12,7 @@ use crate::operators::{Needs, Operators, Sampling};
 use crate::run::Settings;
 use crate::scene::{self, Boundary, Condition, Curl, Expression, Mesh as Source, Method, Scene, Step, Sweeps};
 use crate::source::{self, BodyForce};
-use crate::step::{Control, Histories, Method as Integration, Relax, Scheme, Sweeps as Picard, Tableau, cfl};
+use crate::step::{Control, Method as Integration, Relax, Scheme, Sweeps as Picard, Tableau, cfl};
 use std::sync::Arc;
 
 /// An expression as data of boundary or source.
@@ -100,10 +100,13 @@ impl Scene {
     }
 
     /// The scheme.
-    pub fn build_scheme(&self, mesh: &Mesh, operators: Operators, kernel: Kernel) -> Scheme {
+    ///
+    /// # Errors
+    /// As [`Scheme::new`].
+    pub fn build_scheme(&self, mesh: &Mesh, operators: Operators, kernel: Kernel) -> Result<Scheme> {
         let condition = |group: &String| self.boundaries.iter().find(|b| b.group == *group).map(condition);
         // `check_mesh` has refused groups without a condition; no face looks at that of a periodic group.
-        let free = || Box::new(boundary::Free) as Box<dyn boundary::Boundary>;
+        let free = || Arc::new(boundary::Free) as Arc<dyn boundary::Boundary>;
         let boundaries = mesh.edge_groups.iter().map(|group| condition(group).unwrap_or_else(free)).collect();
         let control = |relax, alpha| Control { relax, rate: alpha * self.scheme.degree as f64 };
         let curl = match self.curl {
@@ -114,27 +117,21 @@ impl Scene {
         let mut sources: Vec<_> = self.sources.iter().map(|s| self.source(s)).collect();
         // A solution has a body force everywhere and always, or nowhere.
         if let Some(exact) = self.build_exact().filter(|exact| exact.body_force([0.0; 2], 0.0).is_some()) {
-            sources.push(Box::new(ExactForce(exact)));
+            sources.push(Arc::new(ExactForce(exact)));
         }
-        let laws = self.laws();
-        Scheme {
-            histories: Histories::new(&operators, &laws),
-            operators,
-            laws,
-            method: self.integration(),
-            flux: self.scheme.flux,
-            boundaries,
-            sources,
-            corrections: vec![],
-            // Constants have no curl.
-            curl: curl.filter(|_| self.scheme.degree > 0),
-            kernel,
+        let (laws, flux) = (self.laws(), self.scheme.flux.build());
+        let scheme = Scheme::new(operators, laws, self.integration(), flux, boundaries)?;
+        let scheme = scheme.with_sources(sources).with_kernel(kernel);
+        // Constants have no curl.
+        match curl.filter(|_| self.scheme.degree > 0) {
+            Some(control) => scheme.with_curl(control),
+            None => Ok(scheme),
         }
     }
 
-    fn source(&self, source: &scene::Source) -> Box<dyn source::Source> {
+    fn source(&self, source: &scene::Source) -> Arc<dyn source::Source> {
         let named = |m: &scene::Material| source.group.is_some() && m.group == source.group;
-        Box::new(BodyForce { value: pair(&source.value), material: self.materials.iter().position(named) })
+        Arc::new(BodyForce { value: pair(&source.value), material: self.materials.iter().position(named) })
     }
 
     /// The speeds that conditions prescribe: the group, and one component (along N) or both, m/s.
@@ -178,17 +175,17 @@ impl Scene {
 }
 
 /// The registry of boundary conditions.
-fn condition(boundary: &Boundary) -> Box<dyn boundary::Boundary> {
+fn condition(boundary: &Boundary) -> Arc<dyn boundary::Boundary> {
     let zero = || data(&Expression::number(0.0));
     match &boundary.condition {
         // The faces of a periodic group are inner faces: nothing asks for its condition.
-        Condition::Free | Condition::Periodic { .. } => Box::new(boundary::Free),
-        Condition::Symmetry => Box::new(boundary::Wall { speed: None }),
-        Condition::Wall { speed } if speed.constant() == Some(0.0) => Box::new(boundary::Wall { speed: None }),
-        Condition::Wall { speed } => Box::new(boundary::Wall { speed: Some(data(speed)) }),
-        Condition::Clamped => Box::new(boundary::Velocity { value: [zero(), zero()] }),
-        Condition::Velocity(value) => Box::new(boundary::Velocity { value: pair(value) }),
-        Condition::Traction(value) => Box::new(boundary::Traction { value: pair(value) }),
-        Condition::Absorbing => Box::new(boundary::Absorbing),
+        Condition::Free | Condition::Periodic { .. } => Arc::new(boundary::Free),
+        Condition::Symmetry => Arc::new(boundary::Wall { speed: None }),
+        Condition::Wall { speed } if speed.constant() == Some(0.0) => Arc::new(boundary::Wall { speed: None }),
+        Condition::Wall { speed } => Arc::new(boundary::Wall { speed: Some(data(speed)) }),
+        Condition::Clamped => Arc::new(boundary::Velocity { value: [zero(), zero()] }),
+        Condition::Velocity(value) => Arc::new(boundary::Velocity { value: pair(value) }),
+        Condition::Traction(value) => Arc::new(boundary::Traction { value: pair(value) }),
+        Condition::Absorbing => Arc::new(boundary::Absorbing),
     }
 }

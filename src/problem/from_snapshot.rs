@@ -35,6 +35,7 @@ fn unpacked(snapshot: &Snapshot, scheme: &Scheme, components: usize) -> State {
     let unheld = blocks.pack(&snapshot.unheld, snapshot.unheld_stride(), |_| 0.0);
     let mut state = State { time: snapshot.time, step: snapshot.step, unheld, ..state };
     scheme.set_internal(&mut state, &snapshot.internal);
+    scheme.set_boundary_memory(&mut state, &snapshot.boundary);
     state
 }
 

@@ -164,7 +164,7 @@ impl<'a> Setup<'a> {
             Some(store) => store.operators(scene, body)?,
             None => (body.operators(scene)?, String::new()),
         };
-        Ok((scene.build_scheme(&body.mesh, operators, kernel), origin))
+        Ok((scene.build_scheme(&body.mesh, operators, kernel)?, origin))
     }
 
     /// The problem on a body of this scene, from another start than that of the scene.

@@ -19,7 +19,7 @@ impl Scene {
 
     /// Components of the state: with the displacement where an output asks for it or the flux looks at it.
     pub(super) fn components(&self) -> usize {
-        if self.wants_displacement() { UNKNOWNS + 2 } else { self.scheme.flux.components() }
+        if self.wants_displacement() { UNKNOWNS + 2 } else { self.scheme.flux.build().components() }
     }
 
     /// Whether all lines of the outputs lie in the mesh.

@@ -5,6 +5,7 @@
 use super::outcome::{Clock, Outcome, columns};
 use super::outputs::schedule_of;
 use super::{Body, Present, Problem, Recent};
+use crate::boundary::{Boundary, Free};
 use crate::cloud::Cloud;
 use crate::error::Result;
 use crate::io::csv::Table;
@@ -19,7 +20,10 @@ use crate::run::{Folder, Pause};
 use crate::scene::{Method, Scene, What, When};
 use crate::state::State;
 use crate::step::{Scheme, Totals};
+use rstar::{RTree, primitives::GeomWithData};
 use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// A problem on another grid.
 pub struct Moved {
@@ -182,12 +186,15 @@ impl Problem {
         let body = Body::as_placed(mesh, placed.cloud.clone(), placed.virtual_points.clone(), material);
         let operators = operators(scene, &body)?;
         clock.lap("matrices");
-        let after = scene.build_scheme(&body.mesh, operators, scheme.kernel);
+        // Laws, conditions, sources and corrections may be the user's own: they go on as they are.
+        let after = scheme.on_grid(operators, conditions_on(&body.mesh, &old.mesh, scheme))?;
         regrid::curl_free(&after, state.components, &transfer.same, &mut transfer.u);
         let new = State::pack(&after.operators.blocks, n, state.components, &transfer.u);
         let mut new = State { time: state.time, step: state.step, ..new }.holding(state, &transfer.same, n);
         let internal = self.internal_on(body.grid(), (&after, &new), &transfer.same, &placed)?;
         after.set_internal(&mut new, &internal);
+        let boundary = self.boundary_memory_on(&body.mesh, &after);
+        after.set_boundary_memory(&mut new, &boundary);
         Ok(Some(Moved { body, scheme: after, state: new, transfer, placed }))
     }
 
@@ -252,6 +259,25 @@ impl Problem {
         Ok(values)
     }
 
+    /// The memory of boundary conditions on a new grid: that of the nearest point of the group.
+    fn boundary_memory_on(&self, mesh: &Mesh, after: &Scheme) -> Vec<f64> {
+        let values = self.scheme.boundary_memory_of(&self.state);
+        let mut trees: HashMap<&str, RTree<GeomWithData<[f64; 2], Range<usize>>>> = HashMap::new();
+        for point in self.scheme.points_with_memory() {
+            let group = &self.body.mesh.edge_groups[point.group][..];
+            trees.entry(group).or_default().insert(GeomWithData::new(point.x, point.numbers));
+        }
+        let mut out = Vec::new();
+        for point in after.points_with_memory() {
+            // Groups are those of the scene on every grid: a group with points has a tree.
+            let tree = trees.get(&mesh.edge_groups[point.group][..]);
+            if let Some(nearest) = tree.and_then(|tree| tree.nearest_neighbor(point.x)) {
+                out.extend_from_slice(&values[nearest.data.clone()]);
+            }
+        }
+        out
+    }
+
     /// Places the points on the new grid.
     fn place_points(&self, to: &Grid, transfer: &Transfer, policy: Policy) -> Result<Placed> {
         let Self { scene, body: old, scheme, .. } = self;
@@ -267,6 +293,13 @@ impl Problem {
         let demand = Demand { line, policy, fresh: &fresh, samples, limits, virtual_points, histories, on_nodes };
         place(&old.grid(), &old.cloud, to, &transfer.same, &demand)
     }
+}
+
+/// The conditions of the groups of a new mesh, which are those of the old one by name; groups inside the body have none.
+fn conditions_on(mesh: &Mesh, old: &Mesh, scheme: &Scheme) -> Vec<Arc<dyn Boundary>> {
+    let number = |group: &String| old.edge_groups.iter().position(|known| known == group);
+    let of = |group: &String| number(group).and_then(|k| scheme.boundaries.get(k)).cloned();
+    mesh.edge_groups.iter().map(|group| of(group).unwrap_or_else(|| Arc::new(Free))).collect()
 }
 
 /// F at points, in the order of the cloud.

@@ -1,6 +1,6 @@
 //! Two-sided interface fluxes (3): Flux*.N of dU/dt + d Flux_a / dX_a = 0 at a point of a face.
 //!
-//! A new flux is one file with a type that implements [`Riemann`] and one line in [`Flux`].
+//! A new flux is one file with a type that implements [`Riemann`] and its entry in the registry of scenes.
 
 mod acoustic;
 mod dual;
@@ -13,7 +13,6 @@ pub use interface::interface;
 pub use rusanov::Rusanov;
 
 use crate::lane::Lane;
-use crate::state::UNKNOWNS;
 use crate::tensor;
 
 /// What a cell shows at a point of its face.
@@ -80,7 +79,7 @@ pub enum Looks {
 }
 
 /// An interface flux. The normal N is the unit outward normal of '-' in the initial configuration.
-pub trait Riemann {
+pub trait Riemann: Copy + std::fmt::Debug + Send + Sync + 'static {
     /// What it looks at.
     const LOOKS: Looks;
 
@@ -121,60 +120,6 @@ pub fn hold<L: Lane>(gap: [L; 2], moduli: [L; 2]) -> [L; 2] {
 /// 6.40, jumps of 2.6e-5 m; with 1: 27.00, 6.74, 2.4e-6; with 3: 26.84, 6.82, 1.7e-6; with 10: 26.70, 6.90, 6e-7. It does not narrow
 /// the step limit: its frequency, 1.7 (N + 1) c/h, is a tenth of the fastest of the scheme.
 pub const HOLD: f64 = 3.0;
-
-names! {
-    /// The registry of fluxes: chosen per batch of blocks by one `match`.
-    Flux {
-        /// Local Lax-Friedrichs.
-        Rusanov = "rusanov",
-        /// Linearised Godunov; alone it is unstable under compression, where F loses its being a gradient.
-        Acoustic = "acoustic",
-        /// Acoustic with a penalty on the tangential jump of F.
-        AcousticCurl = "acoustic-curl",
-        /// Lax-Friedrichs in velocity and traction, with the jump of the rotation of F, which does no work.
-        Dual = "dual",
-    }
-}
-
-impl Flux {
-    /// Components of the state that it needs: with the displacement where it looks at it.
-    pub fn components(self) -> usize {
-        if self.looks() == Looks::Displacement { UNKNOWNS + 2 } else { UNKNOWNS }
-    }
-
-    /// What it looks at.
-    pub fn looks(self) -> Looks {
-        fn looks<R: Riemann>(_: &R) -> Looks {
-            R::LOOKS
-        }
-        crate::with_flux!(self, riemann => looks(riemann))
-    }
-}
-
-/// Runs `$body` with `$flux` bound to the concrete flux.
-#[macro_export]
-macro_rules! with_flux {
-    ($choice:expr, $flux:ident => $body:expr) => {
-        match $choice {
-            $crate::riemann::Flux::Rusanov => {
-                let $flux = &$crate::riemann::Rusanov;
-                $body
-            }
-            $crate::riemann::Flux::Acoustic => {
-                let $flux = &$crate::riemann::Acoustic;
-                $body
-            }
-            $crate::riemann::Flux::AcousticCurl => {
-                let $flux = &$crate::riemann::AcousticCurl;
-                $body
-            }
-            $crate::riemann::Flux::Dual => {
-                let $flux = &$crate::riemann::Dual;
-                $body
-            }
-        }
-    };
-}
 
 /// The flux of a star state: Flux*_F = -v* (x) N, Flux*_p = -t*.
 #[inline(always)]

@@ -118,7 +118,7 @@ mod tests {
     const LOSS: Loss = Loss { cell: 0, site: Site::Node(0), kind: LossKind::NotFinite };
 
     fn state(step: usize) -> State {
-        State { time: step as f64, step, components: 6, u: vec![], internal: vec![], unheld: vec![] }
+        State { time: step as f64, step, components: 6, ..State::default() }
     }
 
     fn survey(min_j: f64, fastest: f64) -> Survey {

@@ -146,7 +146,7 @@ mod tests {
     use super::*;
 
     fn state(step: usize) -> State {
-        State { time: 1e-3 * step as f64, step, components: 6, u: vec![], internal: vec![], unheld: vec![] }
+        State { time: 1e-3 * step as f64, step, components: 6, ..State::default() }
     }
 
     /// A watch over a body that starts with 10 J/m.

@@ -29,12 +29,11 @@ use crate::cloud::seed;
 use crate::error::{Error, Place, Result};
 pub use crate::observe::Field;
 use crate::operators::Limits;
-pub use crate::riemann::Flux;
 use crate::run::Limits as WatchLimits;
 pub use exact::{Exact, SOLUTIONS};
 pub use expression::{Expression, FUNCTIONS, Fault};
 pub use laws::{LAWS, Law, Parameter};
-pub use names::{Histories, Method, Sweeps};
+pub use names::{Flux, Histories, Method, Sweeps};
 use origin::{Origin, Part};
 
 /// A whole scene.

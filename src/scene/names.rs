@@ -31,3 +31,30 @@ names! {
         Ladder = "ladder",
     }
 }
+
+names! {
+    /// The flux on inner faces.
+    Flux {
+        /// Local Lax-Friedrichs.
+        Rusanov = "rusanov",
+        /// Linearised Godunov; alone it is unstable under compression, where F loses its being a gradient.
+        Acoustic = "acoustic",
+        /// Acoustic with a penalty on the tangential jump of F.
+        AcousticCurl = "acoustic-curl",
+        /// Lax-Friedrichs in velocity and traction, with the jump of the rotation of F, which does no work.
+        Dual = "dual",
+    }
+}
+
+impl Flux {
+    /// What computes it.
+    pub fn build(self) -> crate::step::Flux {
+        use crate::riemann::{Acoustic, AcousticCurl, Dual, Rusanov};
+        match self {
+            Flux::Rusanov => crate::step::Flux::new(Rusanov),
+            Flux::Acoustic => crate::step::Flux::new(Acoustic),
+            Flux::AcousticCurl => crate::step::Flux::new(AcousticCurl),
+            Flux::Dual => crate::step::Flux::new(Dual),
+        }
+    }
+}

@@ -1,14 +1,19 @@
 //! Sources: accelerations b of the momentum balance (2), per unit mass.
 //!
-//! A new source is one file with a type that implements [`Source`] and its line in the scene's registry. Without a
+//! A new source is one file with a type that implements [`Source`] and its entry in the registry of scenes. Without a
 //! source nothing is evaluated and nothing stored.
 
 use crate::boundary::Data;
 
 /// A source rho0 b of momentum.
 pub trait Source: Send + Sync {
-    /// b(X, t) in m/s^2, in the cells with law number `material`.
-    fn acceleration(&self, x: [f64; 2], time: f64, material: usize) -> [f64; 2];
+    /// Whether b depends on the velocity. Then the predictor evaluates all sources anew in each sweep.
+    fn depends_on_velocity(&self) -> bool {
+        false
+    }
+
+    /// b in m/s^2, at X (m) in the cells with law number `material`, at a time (s) and with the velocity v (m/s) there.
+    fn acceleration(&self, x: [f64; 2], time: f64, v: [f64; 2], material: usize) -> [f64; 2];
 }
 
 /// A body force given by two expressions, everywhere or in the cells of one law.
@@ -21,7 +26,7 @@ pub struct BodyForce {
 }
 
 impl Source for BodyForce {
-    fn acceleration(&self, x: [f64; 2], time: f64, material: usize) -> [f64; 2] {
+    fn acceleration(&self, x: [f64; 2], time: f64, _: [f64; 2], material: usize) -> [f64; 2] {
         if self.material.is_some_and(|only| only != material) {
             return [0.0; 2];
         }

@@ -3,14 +3,15 @@
 
 use super::balance::BlockBalance;
 use super::block::Block;
+use super::block_work::LawWork;
 use super::displacement::{DisplacementRate, MeanDisplacement};
-use super::law_work::LawWork;
 use super::loss::FacePoint;
 use super::outside::ExternalWork;
 use super::phase::Clock;
 use super::predictor::transfer::{FieldsToPoints, ToNodes};
 use super::predictor::{self, Predictor};
 use super::sources::AddSources;
+use super::sweeps::Sweep;
 use super::volume::{self, with_nodes};
 use super::worst::Worst;
 use super::{Method, Phase, Scratch};
@@ -104,7 +105,7 @@ impl Begin<'_> {
         });
         if !block.scheme.sources.is_empty() {
             let count = block.scheme.operators.block_points(block.number);
-            block.sources_at_points(points, count, &mut arrays.source);
+            block.sources_at_points(points, count, arrays);
         }
     }
 
@@ -148,7 +149,7 @@ impl Begin<'_> {
         with_nodes!(line.m, M => kernel.run(volume::Volume::<'_, M> { line, metric, arrays, rate }));
         let nodes = &mut self.scratch.nodes;
         if !block.scheme.sources.is_empty() {
-            block.sources_at_nodes(&mut nodes.source);
+            block.sources_at_nodes(&nodes.mean, &mut nodes.source);
             block.find_masses(&mut nodes.masses);
             let external = self.external.as_deref_mut();
             kernel.run(AddSources { block, nodes, rate: self.rate, external });
@@ -219,7 +220,14 @@ impl<C: Coefficient> LawWork for Predict<'_, C> {
         let Self { block, matrices, metric, internal, arrays } = self;
         let Method::Ader { time, sweeps } = &block.scheme.method else { return };
         let (weights, dt, kernel) = (&time.weights[..], block.stage.dt, block.scheme.kernel);
-        Predictor { law: &law, matrices, metric, weights, sweeps, dt, internal, kernel }.run::<L>(arrays);
+        let moving = block.scheme.sources.iter().any(|source| source.depends_on_velocity());
+        let renew = |sweep: &Sweep, arrays: &mut predictor::Arrays| {
+            if let Some(points) = block.points() {
+                block.renew_sources(points, &time.integration, sweep, arrays);
+            }
+        };
+        let renew: Option<predictor::Renew> = if moving { Some(&renew) } else { None };
+        Predictor { law: &law, matrices, metric, weights, sweeps, dt, internal, renew, kernel }.run::<L>(arrays);
     }
 }
 

@@ -1,8 +1,8 @@
 //! The energy of the cells of a block: what the balance meters in a step, and the watch over the energy from time to time.
 
 use super::at_points::at_points;
+use super::block_work::LawWork;
 use super::history::recall;
-use super::law_work::LawWork;
 use super::volume::{Masses, with_nodes};
 use super::{Scheme, Scratch, Work as Memory, dense, with_scratch};
 use crate::lane::{F8, Lanes};

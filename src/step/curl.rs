@@ -1,7 +1,7 @@
 //! The control of the curl of F in one block: what [`Relax`] takes of R = F - Pi F = C C^T W F.
 
+use super::block_work::LawWork;
 use super::curl_core::{Arrays, Cells};
-use super::law_work::LawWork;
 use super::volume::Masses;
 use crate::lane::{F8, Kernel, Lane, Lanes, Work, load_array, store_array};
 use crate::material::{Material, Past, virgin};

@@ -39,6 +39,8 @@ pub(super) struct Finish<'a> {
     pub external: Option<&'a mut ExternalWork>,
     /// Its balance of energy; none where it is off.
     pub balance: Option<&'a mut BlockBalance>,
+    /// The memory of the conditions at it.
+    pub memory: &'a mut [f64],
     /// The thread's arrays.
     pub scratch: &'a mut Scratch,
 }
@@ -76,7 +78,8 @@ impl Finish<'_> {
     /// Flux (3) at the face points, conditions of the boundary, and the lift (14) to the nodes.
     fn flux_and_lift(&mut self) {
         let (block, kernel, line) = (self.block, self.block.scheme.kernel, &self.block.scheme.operators.line);
-        let meter = flux::Meter { external: self.external.as_deref_mut(), balance: self.balance.as_deref_mut() };
+        let (external, balance) = (self.external.as_deref_mut(), self.balance.as_deref_mut());
+        let meter = flux::Meter { external, balance, memory: &mut *self.memory };
         block.lifted_fluxes(&self.traces, &mut self.scratch.nodes, meter);
         let (metric, nodes) = (block.metric(), &self.scratch.nodes);
         let held = (block.scheme.flux.looks() == Looks::Displacement).then_some(&nodes.held[..]);

@@ -3,38 +3,33 @@
 use super::across::{Aligned, Apart, Beyond, Joined, LaneByLane, Other, Traces};
 use super::balance::{BlockBalance, FacePower, boundary_loss, boundary_power};
 use super::block::Block;
+use super::block_work::FluxWork;
 use super::outside::ExternalWork;
 use super::volume::{Arrays, width};
-use crate::boundary::FacePoint;
-use crate::lane::{F8, LANES, Lane, Lanes, Work, load_array, store_array};
+use crate::boundary::{FacePoint, Moment};
+use crate::lane::{F8, LANES, Lane, Lanes, load_array, store_array};
 use crate::mesh::{FACES, map};
 use crate::operators::{Metric, Neighbour, Side};
-use crate::riemann::{Flux, Looks, Medium, Riemann, Trace, hold, interface};
+use crate::riemann::{Looks, Medium, Riemann, Trace, hold, interface};
 use crate::state::UNKNOWNS;
 use crate::tensor::DEFORMATION;
-use crate::with_flux;
 
-/// Runs `$body` with `$riemann` bound to the flux and `$numbers` to the constant numbers of a trace, see [`width`].
+/// Runs `$body` with `$numbers` bound to the constant numbers of a trace, see [`width`].
 macro_rules! with_width {
-    ($flux:expr, $metered:expr, $riemann:ident, $numbers:ident => $body:expr) => {
-        with_flux!($flux, $riemann => match (looks($riemann), $metered) {
+    ($looks:expr, $metered:expr, $numbers:ident => $body:expr) => {
+        match ($looks, $metered) {
             (Looks::Nothing, false) => with_width!(@ Nothing, false, $numbers, $body),
             (Looks::Nothing, true) => with_width!(@ Nothing, true, $numbers, $body),
             (Looks::Shear, false) => with_width!(@ Shear, false, $numbers, $body),
             (Looks::Shear, true) => with_width!(@ Shear, true, $numbers, $body),
             (Looks::Displacement, false) => with_width!(@ Displacement, false, $numbers, $body),
             (Looks::Displacement, true) => with_width!(@ Displacement, true, $numbers, $body),
-        })
+        }
     };
     (@ $looks:ident, $metered:literal, $numbers:ident, $body:expr) => {{
         const $numbers: usize = width(Looks::$looks, $metered);
         $body
     }};
-}
-
-#[inline(always)]
-fn looks<R: Riemann>(_: &R) -> Looks {
-    R::LOOKS
 }
 
 /// A trace of some lanes from its numbers.
@@ -78,8 +73,7 @@ fn held<L: Lane>(own: &[L], there: &[L], density: [f64; 2]) -> [L; 2] {
 }
 
 /// The four faces of a block, all lanes as faces between cells of one law.
-struct Faces<'a> {
-    flux: Flux,
+pub(super) struct Faces<'a> {
     metered: bool,
     /// Own traces, [face][point][width].
     own: &'a [F8],
@@ -97,11 +91,10 @@ struct Faces<'a> {
     held: &'a mut [F8],
 }
 
-impl Work for Faces<'_> {
-    type Out = ();
+impl FluxWork for Faces<'_> {
     #[inline(always)]
-    fn run<L: Lanes>(mut self) {
-        with_width!(self.flux, self.metered, riemann, W => {
+    fn run<L: Lanes, R: Riemann>(mut self, riemann: &R) {
+        with_width!(R::LOOKS, self.metered, W => {
             for face in 0..FACES {
                 // One loop for each way in which the traces lie: none looks at it point by point.
                 match self.other[face] {
@@ -157,21 +150,22 @@ pub(super) struct Meter<'a> {
     pub external: Option<&'a mut ExternalWork>,
     /// The balance; none where it is off.
     pub balance: Option<&'a mut BlockBalance>,
+    /// The memory of the conditions at the block.
+    pub memory: &'a mut [f64],
 }
 
 /// What a face between cells adds to the balance of the block. The fluxes are found once more: without the balance they never come to
 /// memory.
-struct FaceBalance<'a, 'b> {
+pub(super) struct FaceBalance<'a, 'b> {
     block: Block<'a>,
     sides: Sides<'a>,
     balance: &'b mut BlockBalance,
 }
 
-impl Work for FaceBalance<'_, '_> {
-    type Out = ();
+impl FluxWork for FaceBalance<'_, '_> {
     #[inline(always)]
-    fn run<L: Lanes>(self) {
-        with_width!(self.block.scheme.flux, true, riemann, W => self.with::<L, _, W>(riemann));
+    fn run<L: Lanes, R: Riemann>(self, riemann: &R) {
+        with_width!(R::LOOKS, true, W => self.with::<L, _, W>(riemann));
     }
 }
 
@@ -204,7 +198,7 @@ impl FaceBalance<'_, '_> {
                         flux.iter_mut().for_each(|flux| flux.0[lane] = 0.0);
                     }
                     Neighbour::Interface(..) => {
-                        let between = block.flux_of_lane(face, point, lane, own, sides.other);
+                        let between = block.flux_of_lane(face, point, lane, own, sides.other, &mut []);
                         between.iter().for_each(|f| (0..UNKNOWNS).for_each(|k| flux[k].0[lane] = f[k]));
                     }
                     Neighbour::Cell(_) | Neighbour::Padding => {}
@@ -221,7 +215,7 @@ impl Block<'_> {
     pub fn lifted_fluxes(&self, traces: &Traces, nodes: &mut Arrays, mut meter: Meter) {
         let scheme = self.scheme;
         let (blocks, m) = (&scheme.operators.blocks, scheme.operators.line.m);
-        let (flux, metered) = (scheme.flux, meter.balance.is_some());
+        let (flux, metered) = (scheme.flux.block(), meter.balance.is_some());
         let length = m * width(flux.looks(), metered);
         let plan = &blocks.plan[self.number];
         let mut other = [Beyond::Aligned(Aligned(&[])); FACES];
@@ -239,7 +233,7 @@ impl Block<'_> {
         let own = traces.faces(FACES * self.number, FACES, length);
         let (metric, medium, span) = (self.metric(), self.medium(), scheme.span());
         let (lift, held) = (&mut nodes.lift[..], &mut nodes.held[..]);
-        scheme.kernel.run(Faces { flux, metered, own, other: &other, metric, points: m, span, medium, lift, held });
+        flux.faces(scheme.kernel, Faces { metered, own, other: &other, metric, points: m, span, medium, lift, held });
         for face in 0..FACES {
             let sides = Sides { face, own: &own[face * length..][..length], other: &other[face] };
             if plan[face].has_boundary_or_interface {
@@ -248,7 +242,7 @@ impl Block<'_> {
                 self.boundary_and_interface_lanes(sides, lift, held, &mut meter);
             }
             if let Some(balance) = &mut meter.balance {
-                scheme.kernel.run(FaceBalance { block: *self, sides, balance });
+                flux.face_balance(scheme.kernel, FaceBalance { block: *self, sides, balance });
             }
         }
     }
@@ -261,7 +255,8 @@ impl Block<'_> {
         let factor = self.factor();
         for (point, (own, lift)) in sides.own.chunks_exact(width).zip(lift.as_chunks_mut::<UNKNOWNS>().0).enumerate() {
             for lane in 0..LANES {
-                let Some(flux) = self.flux_of_lane(face, point, lane, own, sides.other) else { continue };
+                let memory = &mut *meter.memory;
+                let Some(flux) = self.flux_of_lane(face, point, lane, own, sides.other, memory) else { continue };
                 let between = self.held_between(face, point, lane, own, sides.other);
                 (0..2).for_each(|k| held[2 * point + k].0[lane] = between[k]);
                 let metric = self.metric().lane(lane);
@@ -291,6 +286,7 @@ impl Block<'_> {
         lane: usize,
         own: &[F8],
         other: &Beyond,
+        memory: &mut [f64],
     ) -> Option<[f64; UNKNOWNS]> {
         let neighbour = &self.scheme.operators.blocks.neighbours[self.number][face][lane];
         if matches!(neighbour, Neighbour::Cell(_) | Neighbour::Padding) {
@@ -305,7 +301,11 @@ impl Block<'_> {
         };
         let minus = trace(&|k| own[k].0[lane], 1.0, law);
         match *neighbour {
-            Neighbour::Boundary(group) => Some(self.scheme.boundaries[group].flux(&minus, &at, self.stage.times)),
+            Neighbour::Boundary(group) => {
+                let memory = self.scheme.boundary_memory.of_point(memory, [self.number, face, lane, point]);
+                let when = Moment { times: self.stage.times, dt: self.factor() };
+                Some(self.scheme.boundaries[group].flux(&minus, &at, &when, memory))
+            }
             Neighbour::Interface(_, material) => {
                 let beyond = &self.scheme.laws[material];
                 let plus = trace(&|k| other.number(point, k, own.len(), lane), -1.0, beyond);

@@ -2,12 +2,12 @@
 
 use super::begin::Predict;
 use super::block_energy::StoredEnergy;
+use super::block_work::WithLaw;
 use super::curl::Power;
-use super::law_work::LawWork;
 use super::stage::AtNodes;
 use super::survey::Examine;
 use super::volume::Speeds;
-use crate::lane::{F8, Kernel, Lanes, Work};
+use crate::lane::{F8, Kernel};
 use crate::material::{Material, PointLaw};
 use std::sync::Arc;
 
@@ -39,17 +39,6 @@ impl std::ops::Deref for Law {
     }
 }
 
-/// A piece of work with its law.
-struct With<M, W>(M, W);
-
-impl<M: Material, W: LawWork> Work for With<M, W> {
-    type Out = W::Out;
-    #[inline(always)]
-    fn run<L: Lanes>(self) -> W::Out {
-        self.1.run::<L, M>(self.0)
-    }
-}
-
 /// All that a step asks of a law, a block at a time.
 pub(super) trait BlockLaw: PointLaw {
     /// The predictor, on matrices that several blocks share.
@@ -70,30 +59,30 @@ pub(super) trait BlockLaw: PointLaw {
 
 impl<M: Material> BlockLaw for M {
     fn predict_shared(&self, kernel: Kernel, work: Predict<f64>) {
-        kernel.run(With(*self, work));
+        kernel.run(WithLaw(*self, work));
     }
 
     fn predict_own(&self, kernel: Kernel, work: Predict<F8>) {
-        kernel.run(With(*self, work));
+        kernel.run(WithLaw(*self, work));
     }
 
     fn stage(&self, kernel: Kernel, work: AtNodes) {
-        kernel.run(With(*self, work));
+        kernel.run(WithLaw(*self, work));
     }
 
     fn speeds_of_traces(&self, kernel: Kernel, work: Speeds) -> bool {
-        kernel.run(With(*self, work))
+        kernel.run(WithLaw(*self, work))
     }
 
     fn examine(&self, kernel: Kernel, work: Examine) {
-        kernel.run(With(*self, work));
+        kernel.run(WithLaw(*self, work));
     }
 
     fn stored_energy(&self, kernel: Kernel, work: StoredEnergy) -> F8 {
-        kernel.run(With(*self, work))
+        kernel.run(WithLaw(*self, work))
     }
 
     fn power(&self, kernel: Kernel, work: Power) -> F8 {
-        kernel.run(With(*self, work))
+        kernel.run(WithLaw(*self, work))
     }
 }

@@ -11,7 +11,9 @@ mod at_points;
 mod balance;
 mod begin;
 mod block;
+mod block_work;
 mod block_energy;
+mod boundary_memory;
 pub mod cfl;
 mod corrected_stages;
 mod correction;
@@ -22,10 +24,11 @@ mod displacement;
 mod energy;
 mod finish;
 mod flux;
+mod flux_of_blocks;
 mod health;
 pub mod history;
 mod law;
-mod law_work;
+
 mod lift;
 mod loss;
 mod motion;
@@ -34,6 +37,7 @@ pub mod phase;
 mod predictor;
 mod runge_kutta;
 mod schedule;
+mod scheme;
 mod sources;
 mod stage;
 mod sums;
@@ -46,67 +50,28 @@ mod worst;
 
 pub use crate::operators::curl_free::Relax;
 pub use balance::Balance;
+pub use boundary_memory::PointWithMemory;
 pub use correction::{Corrected, Correction, Made};
 pub use curl::Control;
 pub use energy::{EnergyMade, Totals};
+pub use flux_of_blocks::Flux;
 pub use history::Histories;
 pub use law::Law;
 pub use loss::{Loss, LossKind, Site};
 pub use motion::Motion;
 pub use phase::{Phase, Phases};
 pub use runge_kutta::Tableau;
+pub use scheme::{Method, Scheme};
 pub use survey::{Speeds, Survey};
 pub use sweeps::Sweeps;
 
-use crate::basis::TimeBasis;
-use crate::boundary::{Boundary, TimeNode};
-use crate::lane::{F8, Kernel};
-use crate::operators::Operators;
-use crate::riemann::Flux;
-use crate::source::Source;
+use crate::boundary::TimeNode;
+use crate::lane::F8;
 use crate::state::State;
 use begin::Begin;
 use finish::Finish;
 use runge_kutta::MOST_STAGES;
 use std::sync::Mutex;
-
-/// How time is integrated.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Method {
-    /// Local space-time predictor and one corrector a step (15)-(21): ADER-DGMPM, and ADER-DGFEM at the nodes.
-    Ader {
-        /// The time nodes and their integration matrix.
-        time: TimeBasis,
-        /// The schedule of its Picard sweeps.
-        sweeps: Sweeps,
-    },
-    /// Explicit Runge-Kutta: RK-DGFEM.
-    RungeKutta(Tableau),
-}
-
-/// Everything that stays the same during a run.
-pub struct Scheme {
-    /// Matrices of mesh and cloud.
-    pub operators: Operators,
-    /// The laws, by number.
-    pub laws: Vec<Law>,
-    /// Where internal variables lie in a state.
-    pub histories: Histories,
-    /// Time integration.
-    pub method: Method,
-    /// Interface flux between cells of one law.
-    pub flux: Flux,
-    /// Condition of each boundary group of the mesh.
-    pub boundaries: Vec<Box<dyn Boundary>>,
-    /// Sources of momentum.
-    pub sources: Vec<Box<dyn Source>>,
-    /// The control of the curl of F; none where it is off.
-    pub curl: Option<Control>,
-    /// What changes the new state after each step, one after the other.
-    pub corrections: Vec<Box<dyn Correction>>,
-    /// The instruction set.
-    pub kernel: Kernel,
-}
 
 /// Memory that a step writes and that nothing reads from an earlier step.
 pub struct Work {
@@ -203,14 +168,6 @@ pub(crate) fn with_scratch<R>(scratch: &[Mutex<Scratch>], body: impl FnOnce(&mut
     body(&mut guard)
 }
 
-impl Method {
-    /// ADER of degree N_T in time for degree N in space, with the sweeps of [`Sweeps::of_degree`].
-    pub fn ader(degree: usize, time_degree: usize) -> Self {
-        let time = TimeBasis::new(time_degree);
-        Method::Ader { sweeps: Sweeps::of_degree(degree, &time), time }
-    }
-}
-
 impl Scheme {
     /// Advances `state`, whose survey this is, by `dt` into `work.next`; [`Scheme::surveyed`] has the survey of the result.
     /// [`Motion`] does both.
@@ -263,14 +220,6 @@ impl Scheme {
     fn span(&self) -> f64 {
         let nodes = &self.operators.line.basis.nodes;
         nodes[nodes.len() - 1] - nodes[0]
-    }
-
-    /// Number of stages of a step (1 for ADER).
-    pub fn stages(&self) -> usize {
-        match &self.method {
-            Method::Ader { .. } => 1,
-            Method::RungeKutta(tableau) => tableau.stages(),
-        }
     }
 }
 

@@ -30,6 +30,11 @@ impl Motion {
 
     /// Begins with `state`, which [`Motion::survey`] has to look at before the first step.
     pub fn unsurveyed(scheme: &Scheme, state: State) -> Self {
+        let mut state = state;
+        if state.boundary.len() != scheme.boundary_memory.len() {
+            // A state that knows of no conditions: theirs is the memory of a start.
+            scheme.set_boundary_memory(&mut state, &[]);
+        }
         let work = Work::new(scheme, &state);
         Self { state, work, survey: Survey::default(), other: Survey::default() }
     }

@@ -104,6 +104,8 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
         let slots = &slots[stage.number * blocks..][..blocks];
         let external = outside::entry(outside, out.first, out.external, number);
         let balance = out.balance.as_mut().and_then(|balance| balance.get_mut(at));
+        let memory = (scheme.boundary_memory.range(number), scheme.boundary_memory.range(out.first).start);
+        let memory = &mut out.memory[memory.0.start - memory.1..memory.0.end - memory.1];
         (step.finish)(Finish {
             block: Block { scheme, stage, number },
             state,
@@ -114,6 +116,7 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
             new,
             external,
             balance,
+            memory,
             scratch,
         });
     }
@@ -143,6 +146,8 @@ struct Out<'a> {
     external: &'a mut [ExternalWork],
     /// The balance of the blocks; none where it is off.
     balance: Option<&'a mut [BlockBalance]>,
+    /// The memory of boundary conditions.
+    memory: &'a mut [f64],
 }
 
 impl<'a> Out<'a> {
@@ -157,12 +162,12 @@ impl<'a> Out<'a> {
 
     /// The same for a shorter time.
     fn again(&mut self) -> Out<'_> {
-        let Self { first, u, internal, speed, worst, external, balance } = self;
-        Out { first: *first, u, internal, speed, worst, external, balance: balance.as_deref_mut() }
+        let Self { first, u, internal, speed, worst, external, balance, memory } = self;
+        Out { first: *first, u, internal, speed, worst, external, balance: balance.as_deref_mut(), memory }
     }
 
-    /// Those of the first `blocks`, with so many internal variables and entries of `external`, and the rest.
-    fn split(self, blocks: usize, stride: usize, [internal, external]: [usize; 2]) -> (Self, Self) {
+    /// Those of the first `blocks`, with so many internal variables, entries of `external` and numbers of `memory`, and the rest.
+    fn split(self, blocks: usize, stride: usize, [internal, external, memory]: [usize; 3]) -> (Self, Self) {
         let (first, second) = (self.first, self.first + blocks);
         let (u, u2) = self.u.split_at_mut(blocks * stride);
         let (internal, internal2) = self.internal.split_at_mut(internal);
@@ -170,9 +175,10 @@ impl<'a> Out<'a> {
         let (worst, worst2) = self.worst.split_at_mut(blocks.min(self.worst.len()));
         let (external, external2) = self.external.split_at_mut(external);
         let (balance, balance2) = self.balance.map(|balance| balance.split_at_mut(blocks)).unzip();
-        let left = Out { first, u, internal, speed, worst, external, balance };
-        let (first, u, internal, speed) = (second, u2, internal2, speed2);
-        (left, Out { first, u, internal, speed, worst: worst2, external: external2, balance: balance2 })
+        let (memory, memory2) = self.memory.split_at_mut(memory);
+        let left = Out { first, u, internal, speed, worst, external, balance, memory };
+        let (first, u, internal, speed, memory) = (second, u2, internal2, speed2, memory2);
+        (left, Out { first, u, internal, speed, worst: worst2, external: external2, balance: balance2, memory })
     }
 }
 
@@ -211,7 +217,9 @@ impl<B: Fn(Begin) + Copy + Send + Sync, F: Fn(Finish) + Copy + Send + Sync> Step
                 let (start, middle) = (left[0].plan.range.start, right[0].plan.range.start);
                 let first = |block| self.scheme.histories.range(block).start;
                 let entries = |block: usize| self.outside[block] as usize;
-                let numbers = [first(middle) - first(start), entries(middle) - entries(start)];
+                let memory = |block| self.scheme.boundary_memory.range(block).start;
+                let memory = memory(middle) - memory(start);
+                let numbers = [first(middle) - first(start), entries(middle) - entries(start), memory];
                 let stride = self.state.components * self.scheme.operators.nodes();
                 let (one, two) = out.split(middle - start, stride, numbers);
                 rayon::join(|| self.run(left, shown, one), || self.run(right, shown2, two));
@@ -238,7 +246,9 @@ impl Scheme {
             Some(memory) => memory.parts(),
             None => (&mut [][..], None),
         };
-        let mut out = Out { first: 0, u, internal, speed, worst, external: &mut outside.entries, balance };
+        let (external, memory) = (&mut outside.entries[..], &mut next.boundary[..]);
+        memory.copy_from_slice(&state.boundary);
+        let mut out = Out { first: 0, u, internal, speed, worst, external, balance, memory };
         let count = tiles.len();
         for phase in 0..*phases {
             let start = match &mut starts {

@@ -3,6 +3,8 @@
 use super::balance::add;
 use super::block::Block;
 use super::outside::ExternalWork;
+use super::predictor::Arrays;
+use super::sweeps::Sweep;
 use super::volume;
 use crate::lane::{F8, LANES, Lanes, Work, load_array};
 use crate::mesh::map;
@@ -10,16 +12,54 @@ use crate::operators::Points;
 use crate::state::UNKNOWNS;
 use crate::tensor::{AXES, DEFORMATION, dot};
 
+/// Time nodes of a step at most.
+const MOST_TIMES: usize = 8;
+
 impl Block<'_> {
-    /// b at the points and time nodes, for the predictor, [time node][point][2].
-    pub fn sources_at_points(&self, points: &Points, count: usize, out: &mut [F8]) {
+    /// b at the points and time nodes with v of t_n, for the first guess of the predictor, into `arrays.source`.
+    pub fn sources_at_points(&self, points: &Points, count: usize, arrays: &mut Arrays) {
+        let (start, inverse) = (&arrays.start, 1.0 / self.law().density());
+        let now = |p: usize, lane: usize| [0, 1].map(|k| start[UNKNOWNS * p + DEFORMATION + k].0[lane] * inverse);
+        let v = |_: &[F8], p: usize, lane: usize| [now(p, lane); MOST_TIMES];
+        self.sources_with(points, count, v, &mut arrays.source);
+    }
+
+    /// The same with v of the sweep before `sweep`, from its rates and from b itself.
+    pub fn renew_sources(&self, points: &Points, integration: &[f64], sweep: &Sweep, arrays: &mut Arrays) {
+        let count = self.scheme.operators.block_points(self.number);
+        let (times, dt, density) = (self.stage.times.len(), self.stage.dt, self.law().density());
+        let (start, rates) = (&arrays.start, &arrays.rates[0]);
+        let at = |known: &[F8], s: usize, p: usize, lane: usize| {
+            [0, 1].map(|k| {
+                let rate = |j: usize| rates[UNKNOWNS * (j * count + p) + DEFORMATION + k].0[lane];
+                let b = |j: usize| known[AXES * (j * count + p) + k].0[lane];
+                let flux: f64 = (0..sweep.from).map(|j| sweep.at_times[s * sweep.from + j] * rate(j)).sum();
+                let given: f64 = (0..times).map(|j| integration[s * times + j] * b(j)).sum();
+                start[UNKNOWNS * p + DEFORMATION + k].0[lane] / density + dt * (flux / density + given)
+            })
+        };
+        let v = |known: &[F8], p: usize, lane: usize| {
+            std::array::from_fn(|s| if s < times { at(known, s, p, lane) } else { [0.0; AXES] })
+        };
+        self.sources_with(points, count, v, &mut arrays.source);
+    }
+
+    /// b at the points and time nodes, [time node][point][2], with v at all time nodes by v(b so far, point, lane).
+    fn sources_with(
+        &self,
+        points: &Points,
+        count: usize,
+        v: impl Fn(&[F8], usize, usize) -> [[f64; AXES]; MOST_TIMES],
+        out: &mut [F8],
+    ) {
         for lane in 0..LANES {
             let corners = self.scheme.operators.geometry.corners_of(self.number, lane);
             for p in 0..count {
                 let at = points.first[self.number] + p;
                 let x = map::position(&corners, [0, 1].map(|k| points.parent[AXES * at + k].0[lane]));
+                let v = v(out, p, lane);
                 for (s, node) in self.stage.times.iter().enumerate() {
-                    let b = self.acceleration(x, node.time, lane);
+                    let b = self.acceleration(x, node.time, v[s], lane);
                     for (k, b) in b.into_iter().enumerate() {
                         out[AXES * (s * count + p) + k].0[lane] = b;
                     }
@@ -28,30 +68,31 @@ impl Block<'_> {
         }
     }
 
-    /// b at the nodes, averaged over the time nodes, [2][node].
-    pub fn sources_at_nodes(&self, out: &mut [F8]) {
+    /// b at the nodes, averaged over the time nodes, [2][node]; `mean` has F and v of the stage, [node][6].
+    pub fn sources_at_nodes(&self, mean: &[F8], out: &mut [F8]) {
         let n = self.scheme.operators.nodes();
         for lane in 0..LANES {
             let corners = self.scheme.operators.geometry.corners_of(self.number, lane);
             for a in 0..n {
                 let x = map::position(&corners, self.scheme.operators.line.basis.node_2d(a));
-                let mut mean = [0.0; 2];
+                let v = [0, 1].map(|k| mean[UNKNOWNS * a + DEFORMATION + k].0[lane]);
+                let mut average = [0.0; 2];
                 for node in self.stage.times {
-                    let b = self.acceleration(x, node.time, lane);
-                    mean = [0, 1].map(|k| mean[k] + node.weight * b[k]);
+                    let b = self.acceleration(x, node.time, v, lane);
+                    average = [0, 1].map(|k| average[k] + node.weight * b[k]);
                 }
-                (0..AXES).for_each(|k| out[k * n + a].0[lane] = mean[k]);
+                (0..AXES).for_each(|k| out[k * n + a].0[lane] = average[k]);
             }
         }
     }
 
     /// Sum of all sources; padding lanes stay at rest.
-    fn acceleration(&self, x: [f64; 2], time: f64, lane: usize) -> [f64; 2] {
+    fn acceleration(&self, x: [f64; 2], time: f64, v: [f64; 2], lane: usize) -> [f64; 2] {
         if lane >= self.cells() {
             return [0.0; 2];
         }
         self.scheme.sources.iter().fold([0.0; 2], |sum, source| {
-            let b = source.acceleration(x, time, self.material());
+            let b = source.acceleration(x, time, v, self.material());
             [sum[0] + b[0], sum[1] + b[1]]
         })
     }

@@ -1,8 +1,8 @@
 //! The start of a Runge-Kutta stage: U = U^n + dt sum_j a_ij k_j at the nodes, and the law there.
 
 use super::block::Block;
+use super::block_work::LawWork;
 use super::history::recall;
-use super::law_work::LawWork;
 use super::sums::Terms;
 use super::volume;
 use crate::lane::{F8, Lanes, Work, store_array};

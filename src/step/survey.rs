@@ -1,9 +1,9 @@
 //! The health of a state: current wave speeds (for dt and the control of the curl), min J, and where stability was lost.
 
 use super::at_points::{PointValues, at_points, remember};
+use super::block_work::LawWork;
 use super::health;
 use super::history::recall;
-use super::law_work::LawWork;
 use super::loss::{FacePoint, Loss};
 use super::volume::with_nodes;
 use super::worst::{Found, Worst};

@@ -1,6 +1,7 @@
 //! What the predictor holds for both schedules of its sweeps and for every form of its matrices.
 use super::tests::*;
 use super::*;
+use crate::basis::TimeBasis;
 use crate::cloud::{Cloud, seed};
 use crate::mesh::rectangle;
 use crate::operators::{PointMatrices, Share};
@@ -104,6 +105,7 @@ fn one_evaluation_from_the_constant_guess_is_as_good_as_one_at_every_node() {
                 from: 1,
                 rates: vec![0.0; len],
                 sources: vec![0.0; len * len],
+                at_times: vec![0.0; len],
             },
         );
         every.inner[2] = sweeps::Sweep { to: len, from: len, rates: time.integration.clone(), ..one.inner[1].clone() };

@@ -16,6 +16,8 @@ pub struct Sweep {
     pub rates: Vec<f64>,
     /// B, `[to][N_T + 1]`.
     pub sources: Vec<f64>,
+    /// As W, to the N_T + 1 time nodes of the scheme, `[N_T + 1][from]`: for sources that depend on the velocity.
+    pub at_times: Vec<f64>,
 }
 
 /// All sweeps of a step. The first is the guess u = U^n at a single node, since all nodes are equal there: one
@@ -42,9 +44,21 @@ impl Sweeps {
             return Self::new(time, vec![guess(len)]);
         }
         let (at, tau) = (time.integration.clone(), time.tau.clone());
-        let mut sweeps =
-            vec![guess(len), Sweep { to: len, tau: tau.clone(), from: 1, rates: tau.clone(), sources: at.clone() }];
-        sweeps.resize(count.max(1) + 1, Sweep { to: len, tau, from: len, rates: at.clone(), sources: at });
+        let mut sweeps = vec![
+            guess(len),
+            Sweep {
+                to: len,
+                tau: tau.clone(),
+                from: 1,
+                rates: tau.clone(),
+                sources: at.clone(),
+                at_times: tau.clone(),
+            },
+        ];
+        sweeps.resize(
+            count.max(1) + 1,
+            Sweep { to: len, tau, from: len, rates: at.clone(), sources: at.clone(), at_times: at },
+        );
         Self::new(time, sweeps)
     }
 
@@ -56,7 +70,8 @@ impl Sweeps {
         let rungs = (1..len).map(|j| {
             let to = Lagrange::new(j).nodes;
             let rates = integrals(j, &to);
-            Sweep { to: j + 1, from: j, rates, sources: integrals(len, &to), tau: to }
+            let at_times = integrals(j, &time.tau);
+            Sweep { to: j + 1, from: j, rates, sources: integrals(len, &to), at_times, tau: to }
         });
         Self::new(time, std::iter::once(guess(len)).chain(rungs).collect())
     }
@@ -91,7 +106,7 @@ impl Sweeps {
 
 /// u = U^n at one node, without sources.
 fn guess(times: usize) -> Sweep {
-    Sweep { to: 1, tau: vec![0.0], from: 0, rates: vec![], sources: vec![0.0; times] }
+    Sweep { to: 1, tau: vec![0.0], from: 0, rates: vec![], sources: vec![0.0; times], at_times: vec![] }
 }
 
 /// int_0^tau l_k for each tau (rows) and each Lagrange polynomial of the `count`-node Gauss rule (columns).

@@ -1,11 +1,12 @@
 //! What the step holds for all methods: free stream, conservation, equality of methods, decay of noise.
 use super::*;
-use crate::boundary::{FacePoint, Velocity, Wall};
+use crate::boundary::{Boundary, FacePoint, Moment, Velocity, Wall};
 use crate::cloud::{Cloud, seed};
+use crate::lane::Kernel;
 use crate::material::NeoHookean;
 use crate::mesh::{Mesh, links, map, rectangle};
-use crate::operators::{Needs, Sampling};
-use crate::riemann::{Trace, star};
+use crate::operators::{Needs, Operators, Sampling};
+use crate::riemann::{Acoustic, Dual, Trace, star};
 use crate::tensor;
 use std::sync::Arc;
 
@@ -25,7 +26,7 @@ struct Given {
 }
 
 impl Boundary for Given {
-    fn flux(&self, _: &Trace<f64>, at: &FacePoint, _: &[TimeNode]) -> [f64; 6] {
+    fn flux(&self, _: &Trace<f64>, at: &FacePoint, _: &Moment, _: &mut [f64]) -> [f64; 6] {
         star(self.v, tensor::times(steel().stress(self.f), at.normal), at.normal)
     }
 }
@@ -50,7 +51,7 @@ pub(super) fn scheme(
     kind: Kind,
     degree: usize,
     cloud: &Cloud,
-    boundary: fn() -> Box<dyn Boundary>,
+    boundary: fn() -> Arc<dyn Boundary>,
 ) -> Scheme {
     let sampling = match kind {
         Kind::RkDgfem => None,
@@ -64,22 +65,16 @@ pub(super) fn scheme(
         _ => Method::ader(degree, degree),
     };
     let alpha = if degree >= 4 { 6.0 } else { 3.0 };
-    Scheme {
-        operators,
-        laws: vec![steel()],
-        histories: Histories::default(),
-        method,
-        flux: Flux::Dual,
-        boundaries: mesh.edge_groups.iter().map(|_| boundary()).collect(),
-        sources: vec![],
-        corrections: vec![],
-        curl: (degree > 0).then_some(Control { relax: Relax::Rotation, rate: alpha * degree as f64 }),
-        kernel: Kernel::widest(),
+    let boundaries = mesh.edge_groups.iter().map(|_| boundary()).collect();
+    let scheme = Scheme::new(operators, vec![steel()], method, Flux::new(Dual), boundaries).unwrap();
+    match degree {
+        0 => scheme,
+        _ => scheme.with_curl(Control { relax: Relax::Rotation, rate: alpha * degree as f64 }).unwrap(),
     }
 }
 
-pub(super) fn wall() -> Box<dyn Boundary> {
-    Box::new(Wall { speed: None })
+pub(super) fn wall() -> Arc<dyn Boundary> {
+    Arc::new(Wall { speed: None })
 }
 
 /// The state whose unknowns at a node are `u(X, number)`, number counting nodes over all cells.
@@ -132,7 +127,7 @@ fn free_stream_is_kept_on_distorted_cells_by_all_methods_and_degrees() {
     for degree in 0..=6 {
         let cloud = midpoints(&mesh, degree);
         for kind in KINDS {
-            let scheme = scheme(&mesh, kind, degree, &cloud, || Box::new(Given { f: F, v: V }));
+            let scheme = scheme(&mesh, kind, degree, &cloud, || Arc::new(Given { f: F, v: V }));
             let uniform = |_: [f64; 2], _: usize| [F[0], F[1], F[2], F[3], 1.3 * V[0], 1.3 * V[1]];
             let mut state = state(&mesh, &scheme, uniform);
             let before = unpacked(&scheme, &state);
@@ -150,7 +145,7 @@ fn a_rotated_body_at_rest_stays_at_rest() {
     let mesh = distorted(4);
     let (sine, cosine) = 1.0_f64.sin_cos();
     for kind in KINDS {
-        let scheme = scheme(&mesh, kind, 2, &midpoints(&mesh, 2), || Box::new(crate::boundary::Free));
+        let scheme = scheme(&mesh, kind, 2, &midpoints(&mesh, 2), || Arc::new(crate::boundary::Free));
         let mut state = state(&mesh, &scheme, |_, _| [cosine, -sine, sine, cosine, 0.0, 0.0]);
         let before = unpacked(&scheme, &state);
         march(&scheme, &mut state, 50, 0.05);
@@ -167,9 +162,9 @@ fn walls_on_all_sides_keep_mean_deformation_and_free_edges_keep_momentum() {
         let cloud = midpoints(&mesh, 2);
         let closed = scheme(&mesh, kind, 2, &cloud, || {
             let zero: crate::boundary::Data = Arc::new(|_, _| 0.0);
-            Box::new(Velocity { value: [zero.clone(), zero] })
+            Arc::new(Velocity { value: [zero.clone(), zero] })
         });
-        let free = scheme(&mesh, kind, 2, &cloud, || Box::new(crate::boundary::Free));
+        let free = scheme(&mesh, kind, 2, &cloud, || Arc::new(crate::boundary::Free));
         let mut held = state(&mesh, &closed, wavy);
         let mut loose = held.clone();
         let (first, start) = (closed.totals(&held), free.totals(&loose));
@@ -208,7 +203,7 @@ fn with_points_on_the_gauss_nodes_dgmpm_is_dgfem_after_1000_steps() {
 /// Two laws in a chessboard: every face is an interface.
 pub(super) fn chessboard(mesh: &Mesh, kind: Kind) -> (Scheme, Vec<f64>) {
     let cloud = midpoints(mesh, 2);
-    let base = scheme(mesh, kind, 2, &cloud, || Box::new(crate::boundary::Free));
+    let base = scheme(mesh, kind, 2, &cloud, || Arc::new(crate::boundary::Free));
     let side = (mesh.cells.len() as f64).sqrt() as usize;
     let material: Vec<usize> = (0..mesh.cells.len()).map(|cell| (cell % side + cell / side) % 2).collect();
     let sampling = (kind == Kind::AderDgmpm).then_some(Sampling::Cloud(&cloud));
@@ -369,7 +364,7 @@ fn without_control_the_acoustic_flux_lets_noise_grow_in_compression() {
     // The instability that the control cures is there: a test that cannot fail on it would test nothing.
     let mesh = rectangle([1.0, 1.0], [6, 6]).unwrap();
     let base = scheme(&mesh, Kind::AderDgfem, 2, &Cloud::default(), wall);
-    let scheme = Scheme { flux: Flux::Acoustic, curl: None, ..base };
+    let scheme = Scheme { flux: Flux::new(Acoustic), curl: None, ..base };
     let mut state = state(&mesh, &scheme, |_, a| {
         std::array::from_fn(|k| [0.9, 0.0, 0.0, 0.9, 0.0, 0.0][k] + 1e-9 * noise(6 * a + k))
     });

@@ -3,7 +3,7 @@
 //! F rows in strong form (D v; `finish` adds the lifted jump of v), exact on uniform states; p rows in weak form. Both
 //! are exact integrals on bilinear cells, so the two forms agree there to rounding.
 
-use super::law_work::LawWork;
+use super::block_work::LawWork;
 use super::worst::Worst;
 use crate::lane::{F8, Lane, Lanes, Twin, Work, load_array, store_array, twins};
 use crate::material::Material;

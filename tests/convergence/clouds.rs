@@ -96,7 +96,7 @@ fn noise_on_a_compressed_state_does_not_grow_in_2000_steps_on_any_cloud() {
     let base = [0.965, 0.0, 0.0, 1.0, 0.0, 0.0];
     let mesh = Grid::Squares.mesh(8);
     let run = |points: Points, degree: usize| {
-        let scheme = Scheme { sources: vec![], ..scheme(&problem, &mesh, Kind::Cloud(points), degree, degree) };
+        let scheme = scheme(&problem, &mesh, Kind::Cloud(points), degree, degree).with_sources(vec![]);
         // Strains of 1 %: what clouds sample of P(F) is not linear.
         let mut state = noisy(&problem, &mesh, &scheme, base, 1e-2);
         let (mut first, mut last) = (0.0, 0.0);
@@ -186,7 +186,7 @@ fn cells_of_all_kinds_in_one_block_keep_a_uniform_state() {
     for degree in 1..=3 {
         let (mesh, column) = numbered(false);
         let cloud = mixed(&mesh, &column, degree);
-        let scheme = Scheme { sources: vec![], ..scheme_on(&problem, &mesh, Sampling::Cloud(&cloud), degree) };
+        let scheme = scheme_on(&problem, &mesh, Sampling::Cloud(&cloud), degree).with_sources(vec![]);
         let mut state = noisy(&problem, &mesh, &scheme, base, 0.0);
         alone(|| walk(&scheme, degree, &mut state, 1.0 / 8.0, 50, |_, _| {}));
         let off = distance(&problem, &scheme, &state, base);

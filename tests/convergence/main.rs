@@ -16,7 +16,7 @@ mod walls;
 
 use dgmpm::material::LinearElastic;
 use dgmpm::step::Law;
-use dgmpm::step::{Motion, Scheme, cfl};
+use dgmpm::step::{Motion, cfl};
 use meshes::Grid;
 use problem::{Problem, manufactured};
 use solve::{GAUSS, JITTER, KINDS, Kind, MIDPOINTS, MORE, PAPER, alone, scheme, start};
@@ -101,7 +101,7 @@ fn for_a_linear_law_dgmpm_on_any_cloud_is_dgfem() {
     let mesh = Grid::Squares.mesh(6);
     for degree in 1..=3 {
         let end = |kind| {
-            let scheme = Scheme { sources: vec![], ..scheme(&problem, &mesh, kind, degree, degree) };
+            let scheme = scheme(&problem, &mesh, kind, degree, degree).with_sources(vec![]);
             let mut motion = Motion::new(&scheme, start(&problem, &mesh, &scheme)).unwrap();
             for _ in 0..200 {
                 let dt = 0.85 * cfl::limit(&scheme.method, degree) / 6.0 / motion.survey.fastest;

@@ -7,14 +7,15 @@ use dgmpm::basis::TimeBasis;
 use dgmpm::boundary::{Boundary, Free, Wall};
 use dgmpm::cloud::{Cloud, seed};
 use dgmpm::exact::{Errors, ExactForce, errors};
-use dgmpm::lane::Kernel;
 use dgmpm::mesh::{Mesh, map, periodic_links};
 use dgmpm::operators::{Needs, Operators, Sampling};
-use dgmpm::riemann::Flux;
+use dgmpm::riemann::Rusanov;
 use dgmpm::run::{Report, Run, Settings};
 use dgmpm::source::Source;
 use dgmpm::state::State;
-use dgmpm::step::{Control, Histories, Method, Relax, Scheme, Sweeps, Tableau, cfl};
+use dgmpm::step::Flux;
+use dgmpm::step::{Control, Method, Relax, Scheme, Sweeps, Tableau, cfl};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// A method, with the layout of its points.
@@ -77,34 +78,28 @@ pub fn scheme(problem: &Problem, mesh: &Mesh, kind: Kind, degree: usize, time_de
         }
         _ => Method::ader(degree, time_degree),
     };
-    Scheme { method, ..sampled(problem, mesh, sampling, degree) }
+    sampled(problem, mesh, sampling, degree, method)
 }
 
 /// ADER of degree N in space and time on these points.
 pub fn scheme_on(problem: &Problem, mesh: &Mesh, sampling: Sampling, degree: usize) -> Scheme {
-    sampled(problem, mesh, Some(sampling), degree)
+    sampled(problem, mesh, Some(sampling), degree, Method::ader(degree, degree))
 }
 
-fn sampled(problem: &Problem, mesh: &Mesh, sampling: Option<Sampling>, degree: usize) -> Scheme {
+fn sampled(problem: &Problem, mesh: &Mesh, sampling: Option<Sampling>, degree: usize, method: Method) -> Scheme {
     let links = periodic_links(mesh, &problem.periodic).unwrap();
     let needs = Needs { degree, sampling, curl_free: problem.alpha.is_some() };
     let operators = Operators::build(mesh, &links, &vec![0; mesh.cells.len()], &needs).unwrap();
     let force = problem.exact.body_force([0.0; 2], 0.0).is_some();
-    let sources: Vec<Box<dyn Source>> = if force { vec![Box::new(ExactForce(problem.exact.clone()))] } else { vec![] };
-    let wall = |_| Box::new(Wall { speed: None }) as Box<dyn Boundary>;
+    let sources: Vec<Arc<dyn Source>> = if force { vec![Arc::new(ExactForce(problem.exact.clone()))] } else { vec![] };
+    let wall = |_| Arc::new(Wall { speed: None }) as Arc<dyn Boundary>;
     let mut boundaries: Vec<_> = (0..mesh.edge_groups.len()).map(wall).collect();
-    boundaries[1] = Box::new(Free);
-    Scheme {
-        operators,
-        laws: vec![problem.law.clone()],
-        histories: Histories::default(),
-        method: Method::ader(degree, degree),
-        flux: Flux::Rusanov,
-        boundaries,
-        sources,
-        corrections: vec![],
-        curl: problem.alpha.map(|alpha| Control { relax: Relax::Gradient, rate: alpha * degree as f64 }),
-        kernel: Kernel::widest(),
+    boundaries[1] = Arc::new(Free);
+    let laws = vec![problem.law.clone()];
+    let scheme = Scheme::new(operators, laws, method, Flux::new(Rusanov), boundaries).unwrap().with_sources(sources);
+    match problem.alpha {
+        Some(alpha) => scheme.with_curl(Control { relax: Relax::Gradient, rate: alpha * degree as f64 }).unwrap(),
+        None => scheme,
     }
 }
 

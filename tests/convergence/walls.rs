@@ -54,7 +54,7 @@ fn the_smooth_box_between_walls_has_the_norms_of_the_reference() {
     let mesh = Grid::Squares.mesh(16);
     for kind in [MIDPOINTS, Kind::Fem, Kind::Rk] {
         let mut scheme = scheme(&problem, &mesh, kind, 3, 3);
-        scheme.boundaries[1] = Box::new(Wall { speed: None });
+        scheme.boundaries[1] = Arc::new(Wall { speed: None });
         let state = alone(|| advanced(&problem, &mesh, &scheme)).expect("the box is smooth: no run loses stability");
         let norms = norms(&scheme, &state, &[0; 256]);
         for (name, expected) in

@@ -4,16 +4,17 @@ use super::*;
 use crate::boundary::{Absorbing, Boundary, Data, Free, Traction, Velocity, Wall};
 use crate::material::LinearElastic;
 use crate::mesh::Mesh;
-use crate::riemann::Flux;
+use crate::riemann::{Acoustic, AcousticCurl, Rusanov};
 use crate::source::BodyForce;
 use crate::state::State;
+use crate::step::Flux;
 use crate::step::Law;
 use crate::step::tests::{KINDS, Kind, chessboard, distorted, midpoints, noise, scheme, state, steel, wall, wavy};
 use crate::step::{Method, Motion, Tableau};
 use std::sync::Arc;
 
 /// A condition of the boundary, made anew for each group.
-type Condition = fn() -> Box<dyn Boundary>;
+type Condition = fn() -> Arc<dyn Boundary>;
 
 fn data(f: fn([f64; 2], f64) -> f64) -> Data {
     Arc::new(f)
@@ -22,11 +23,11 @@ fn data(f: fn([f64; 2], f64) -> f64) -> Data {
 /// Every condition, with its name; each does work or dissipates in its own way.
 const CONDITIONS: [(&str, Condition); 6] = [
     ("wall", wall),
-    ("moving wall", || Box::new(Wall { speed: Some(data(|x, t| 0.1 * x[1] + t)) })),
-    ("free", || Box::new(Free)),
-    ("traction", || Box::new(Traction { value: [data(|x, t| 0.1 + x[0] * t), data(|_, _| -0.2)] })),
-    ("velocity", || Box::new(Velocity { value: [data(|x, _| 0.1 * x[1]), data(|_, t| 0.3 - t)] })),
-    ("absorbing", || Box::new(Absorbing)),
+    ("moving wall", || Arc::new(Wall { speed: Some(data(|x, t| 0.1 * x[1] + t)) })),
+    ("free", || Arc::new(Free)),
+    ("traction", || Arc::new(Traction { value: [data(|x, t| 0.1 + x[0] * t), data(|_, _| -0.2)] })),
+    ("velocity", || Arc::new(Velocity { value: [data(|x, _| 0.1 * x[1]), data(|_, t| 0.3 - t)] })),
+    ("absorbing", || Arc::new(Absorbing)),
 ];
 
 /// [`wavy`] with jumps between cells and curl within them.
@@ -71,10 +72,10 @@ fn assert_explained(what: &str, balance: &Balance, energy: f64) {
 fn small_steps_lose_what_jumps_take_for_any_flux_and_condition() {
     let mesh = distorted(3);
     for (name, boundary) in CONDITIONS {
-        for flux in [Flux::Rusanov, Flux::Acoustic, Flux::AcousticCurl] {
+        for flux in [Flux::new(Rusanov), Flux::new(Acoustic), Flux::new(AcousticCurl)] {
             for law in [steel(), Law::new(LinearElastic::new(1.0, 0.3, 1.3))] {
                 let what = format!("{name}, {flux:?}, {law:?}");
-                let scheme = Scheme { flux, laws: vec![law], ..rk4(&mesh, 2, boundary) };
+                let scheme = Scheme { flux: flux.clone(), laws: vec![law], ..rk4(&mesh, 2, boundary) };
                 let mut state = state(&mesh, &scheme, rough);
                 let (balance, energy) = metered(&scheme, &mut state, 5, 1e-4);
                 assert_explained(&what, &balance, energy);
@@ -95,7 +96,7 @@ fn small_steps_lose_what_jumps_take_for_any_degree_two_materials_and_a_source() 
     }
     let (base, densities) = chessboard(&mesh, Kind::RkDgfem);
     let force = BodyForce { value: [data(|x, _| 1.0 - x[1]), data(|_, t| -3.0 + t)], material: Some(1) };
-    let scheme = Scheme { sources: vec![Box::new(force)], ..base };
+    let scheme = Scheme { sources: vec![Arc::new(force)], ..base };
     let mut state = state(&mesh, &scheme, |x, a| {
         let u = rough(x, a);
         [u[0], u[1], u[2], u[3], u[4] * densities[a / 9], u[5] * densities[a / 9]]
@@ -109,7 +110,7 @@ fn small_steps_lose_what_jumps_take_for_any_degree_two_materials_and_a_source() 
 #[test]
 fn the_work_of_a_wall_that_moves_is_its_force_times_its_speed() {
     let mesh = distorted(3);
-    let moving: Condition = || Box::new(Wall { speed: Some(data(|_, _| 0.5)) });
+    let moving: Condition = || Arc::new(Wall { speed: Some(data(|_, _| 0.5)) });
     let scheme = rk4(&mesh, 1, moving);
     let mut state = state(&mesh, &scheme, |_, _| [1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
     let step = 1e-4;
@@ -141,7 +142,7 @@ fn the_balance_changes_no_bit_of_the_state_and_has_the_same_bits_on_any_number_o
     for kind in KINDS {
         let force = || BodyForce { value: [data(|x, _| x[1]), data(|_, t| t)], material: None };
         let base = scheme(&mesh, kind, 2, &midpoints(&mesh, 2), CONDITIONS[3].1);
-        let scheme = Scheme { sources: vec![Box::new(force())], ..base };
+        let scheme = Scheme { sources: vec![Arc::new(force())], ..base };
         let mut plain = state(&mesh, &scheme, rough);
         let start = plain.clone();
         crate::step::tests::march(&scheme, &mut plain, 30, 0.05);

@@ -8,6 +8,7 @@ mod rates;
 pub mod transfer;
 
 use super::history::recall;
+use super::sweeps::Sweep;
 use super::{Method, Sweeps};
 use crate::lane::{self, Coefficient, F8, Kernel, Lane, Lanes, Twin, load_array, store_array};
 use crate::material::{Material, Past, count, virgin};
@@ -25,7 +26,7 @@ pub struct Arrays {
     /// U_p^n and what the sources add until a time node, [p][6]; empty without sources.
     shifted: Vec<F8>,
     /// r_k,p of the sweep before and of this one, [k][p][6].
-    rates: [Vec<F8>; 2],
+    pub rates: [Vec<F8>; 2],
     /// Q of one time node as [`Rates`] wants it, [p][6].
     q: Vec<F8>,
     /// Sources b at points and time nodes, [k][p][2]; empty without sources.
@@ -75,9 +76,14 @@ pub struct Predictor<'a, M, C> {
     pub dt: f64,
     /// Internal variables at t_n, [p][variable]; empty for a law without.
     pub internal: &'a [F8],
+    /// Evaluates the sources anew before a sweep; none where they do not depend on the velocity.
+    pub renew: Option<Renew<'a>>,
     /// The instruction set.
     pub kernel: Kernel,
 }
+
+/// What evaluates the sources anew before a sweep.
+pub type Renew<'a> = &'a dyn Fn(&Sweep, &mut Arrays);
 
 /// dt times a row of a sweep's matrix; at most 7 time nodes.
 type Row = [f64; 8];
@@ -91,6 +97,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         let constant = (self.metric.len() == DEFORMATION).then(|| load_array::<L, DEFORMATION>(self.metric));
         let mut row = Row::default();
         for sweep in &self.sweeps.inner {
+            self.renew(sweep, arrays);
             for s in 0..sweep.to {
                 self.shift::<L>(arrays, &sweep.sources[s * times..(s + 1) * times]);
                 let Arrays { start, shifted, rates: [before, _], q, .. } = arrays;
@@ -111,11 +118,20 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
             let [before, now] = &mut arrays.rates;
             std::mem::swap(before, now);
         }
+        self.renew(&self.sweeps.last, arrays);
         // Degree 1 by itself: all loops are unrolled.
         let last = &self.sweeps.last;
         match (np, last.from, last.to) {
             (4, 1, 2) => self.average::<L>(arrays, 4, [1, 2]),
             (np, from, to) => self.average::<L>(arrays, np, [from, to]),
+        }
+    }
+
+    /// Sources with the velocity of the sweep before.
+    #[inline(always)]
+    fn renew(&self, sweep: &Sweep, arrays: &mut Arrays) {
+        if let Some(renew) = self.renew.filter(|_| sweep.from > 0) {
+            renew(sweep, arrays);
         }
     }
 

@@ -1,0 +1,191 @@
+//! What stays the same from step to step.
+
+use super::boundary_memory::BoundaryMemory;
+use super::{Control, Correction, Flux, Histories, Law, Sweeps, Tableau};
+use crate::basis::TimeBasis;
+use crate::boundary::Boundary;
+use crate::error::{Error, Result};
+use crate::lane::Kernel;
+use crate::operators::{Neighbour, Operators};
+use crate::source::Source;
+use std::sync::Arc;
+
+/// How time is integrated.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Method {
+    /// Local space-time predictor and one corrector a step (15)-(21): ADER-DGMPM, and ADER-DGFEM at the nodes.
+    Ader {
+        /// The time nodes and their integration matrix.
+        time: TimeBasis,
+        /// The schedule of its Picard sweeps.
+        sweeps: Sweeps,
+    },
+    /// Explicit Runge-Kutta: RK-DGFEM.
+    RungeKutta(Tableau),
+}
+
+impl Method {
+    /// ADER of degree N_T in time for degree N in space, with the sweeps of [`Sweeps::of_degree`].
+    pub fn ader(degree: usize, time_degree: usize) -> Self {
+        let time = TimeBasis::new(time_degree);
+        Method::Ader { sweeps: Sweeps::of_degree(degree, &time), time }
+    }
+}
+
+/// Everything that stays the same during a run: read freely, made by [`Scheme::new`].
+#[non_exhaustive]
+pub struct Scheme {
+    /// Matrices of mesh and cloud.
+    pub operators: Operators,
+    /// The laws, by number.
+    pub laws: Vec<Law>,
+    /// Where internal variables lie in a state.
+    pub histories: Histories,
+    /// Where the memory of boundary conditions lies in a state.
+    pub(super) boundary_memory: BoundaryMemory,
+    /// Time integration.
+    pub method: Method,
+    /// Interface flux between cells of one law.
+    pub flux: Flux,
+    /// Condition of each boundary group of the mesh.
+    pub boundaries: Vec<Arc<dyn Boundary>>,
+    /// Sources of momentum.
+    pub sources: Vec<Arc<dyn Source>>,
+    /// The control of the curl of F; none where it is off.
+    pub curl: Option<Control>,
+    /// What changes the new state after each step, one after the other.
+    pub corrections: Vec<Arc<dyn Correction>>,
+    /// The instruction set.
+    pub kernel: Kernel,
+}
+
+impl Scheme {
+    /// The largest degree N that steps are compiled for.
+    pub const LARGEST_DEGREE: usize = 6;
+
+    /// A scheme on the widest instruction set, without sources, corrections and control of the curl. `laws` are those of the
+    /// material numbers of the cells, `boundaries` the conditions of the boundary groups of the mesh, by number.
+    ///
+    /// # Errors
+    /// A degree beyond [`Scheme::LARGEST_DEGREE`]; fewer laws or conditions than cells and faces ask for; ADER on operators
+    /// without points.
+    pub fn new(
+        operators: Operators,
+        laws: Vec<Law>,
+        method: Method,
+        flux: Flux,
+        boundaries: Vec<Arc<dyn Boundary>>,
+    ) -> Result<Self> {
+        let (degree, most) = (operators.degree, Self::LARGEST_DEGREE);
+        if degree > most {
+            return Err(Error::input(format!("the degree is {degree}"), format!("give a degree from 0 to {most}")));
+        }
+        let time_degree = match &method {
+            Method::Ader { time, .. } => time.len() - 1,
+            Method::RungeKutta(_) => 0,
+        };
+        if time_degree > most {
+            let what = format!("the degree in time is {time_degree}");
+            return Err(Error::input(what, format!("give a degree from 0 to {most}")));
+        }
+        let (materials, groups) = asked_for(&operators);
+        if laws.len() < materials {
+            let what = format!("the cells have {materials} materials, and there are {} laws", laws.len());
+            return Err(Error::input(what, "give a law for each material number"));
+        }
+        if boundaries.len() < groups {
+            let what = format!("the mesh has {groups} boundary groups, and there are {} conditions", boundaries.len());
+            return Err(Error::input(what, "give a condition for each boundary group, by its number"));
+        }
+        if matches!(method, Method::Ader { .. }) && operators.points.is_none() {
+            let what = "ADER samples the law at points, and the operators have none";
+            return Err(Error::input(what, "build the operators with Needs { sampling: Some(..), .. }"));
+        }
+        let (histories, boundary_memory) =
+            (Histories::new(&operators, &laws), BoundaryMemory::new(&operators, &boundaries));
+        let (sources, corrections, curl, kernel) = (vec![], vec![], None, Kernel::widest());
+        Ok(Self {
+            operators,
+            laws,
+            histories,
+            boundary_memory,
+            method,
+            flux,
+            boundaries,
+            sources,
+            curl,
+            corrections,
+            kernel,
+        })
+    }
+
+    /// With sources of momentum.
+    #[must_use]
+    pub fn with_sources(self, sources: Vec<Arc<dyn Source>>) -> Self {
+        Self { sources, ..self }
+    }
+
+    /// With corrections of the new state, in this order.
+    #[must_use]
+    pub fn with_corrections(self, corrections: Vec<Arc<dyn Correction>>) -> Self {
+        Self { corrections, ..self }
+    }
+
+    /// The same on another grid of the same body, with the conditions of its boundary groups.
+    ///
+    /// # Errors
+    /// As [`Scheme::new`].
+    pub fn on_grid(&self, operators: Operators, boundaries: Vec<Arc<dyn Boundary>>) -> Result<Self> {
+        let (laws, method, flux) = (self.laws.clone(), self.method.clone(), self.flux.clone());
+        let new = Self::new(operators, laws, method, flux, boundaries)?;
+        let (sources, corrections) = (self.sources.clone(), self.corrections.clone());
+        let new = new.with_sources(sources).with_corrections(corrections).with_kernel(self.kernel);
+        match self.curl {
+            Some(control) => new.with_curl(control),
+            None => Ok(new),
+        }
+    }
+
+    /// With the control of the curl of F.
+    ///
+    /// # Errors
+    /// Operators without the projection onto gradients.
+    pub fn with_curl(self, control: Control) -> Result<Self> {
+        if self.operators.curl_free.is_none() {
+            let what = "the control of the curl needs the projection onto gradients, and the operators have none";
+            return Err(Error::input(what, "build the operators with Needs { curl_free: true, .. }"));
+        }
+        Ok(Self { curl: Some(control), ..self })
+    }
+
+    /// On this instruction set.
+    #[must_use]
+    pub fn with_kernel(self, kernel: Kernel) -> Self {
+        Self { kernel, ..self }
+    }
+
+    /// Number of stages of a step (1 for ADER).
+    pub fn stages(&self) -> usize {
+        match &self.method {
+            Method::Ader { .. } => 1,
+            Method::RungeKutta(tableau) => tableau.stages(),
+        }
+    }
+}
+
+/// How many materials and boundary groups the blocks name.
+fn asked_for(operators: &Operators) -> (usize, usize) {
+    let blocks = &operators.blocks;
+    let (mut materials, mut groups) = (0, 0);
+    for &material in &blocks.material {
+        materials = materials.max(material + 1);
+    }
+    for neighbour in blocks.neighbours.iter().flatten().flatten() {
+        match neighbour {
+            Neighbour::Boundary(group) => groups = groups.max(group + 1),
+            Neighbour::Interface(_, material) => materials = materials.max(material + 1),
+            Neighbour::Cell(_) | Neighbour::Padding => {}
+        }
+    }
+    (materials, groups)
+}
