@@ -14,6 +14,7 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 pub mod counted;
+mod dual;
 pub mod functions;
 mod portable;
 mod twin;
@@ -22,6 +23,7 @@ mod twin;
 pub use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
 pub use avx512::Avx512;
+pub use dual::Dual;
 pub use portable::Portable;
 pub use twin::{Twin, apart, twins};
 
