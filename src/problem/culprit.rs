@@ -1,9 +1,10 @@
 //! Which expression of a scene is not finite: looked for once a run has lost stability, so that a run that goes well does
 //! not pay for it.
 
+use crate::expression::Expression;
 use crate::mesh::Mesh;
 use crate::operators::Neighbour;
-use crate::scene::{Condition, Expression, Scene};
+use crate::scene::{Condition, Scene};
 use crate::step::{Scheme, Site};
 use std::collections::BTreeSet;
 

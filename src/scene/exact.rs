@@ -3,9 +3,7 @@
 use super::Scene;
 use super::reader::{Check, FINITE, POSITIVE, Reader};
 use crate::error::Result;
-use crate::exact::{
-    Exact as Solution, LinearBar, Manufactured, PlasticImpact, Riemann, SimpleWave, Vortex, WallImpact,
-};
+use crate::exact::{Exact as Solution, J2Impact, LinearBar, Manufactured, Riemann, SimpleWave, Vortex, WallImpact};
 use crate::material::Law;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -63,12 +61,12 @@ pub const SOLUTIONS: &[Entry] = &[
         build: |of, laws| Some(Arc::new(WallImpact::new(&laws[0], of("speed")))),
     },
     Entry {
-        name: "plastic-impact",
+        name: "j2-impact",
         parameters: &[("speed", 200.0, POSITIVE)],
         linear: false,
         plastic: true,
         materials: 1,
-        build: |of, laws| Some(Arc::new(PlasticImpact::new(&laws[0], of("speed"))?)),
+        build: |of, laws| Some(Arc::new(J2Impact::new(&laws[0], of("speed"))?)),
     },
     Entry {
         name: "linear-bar",
@@ -160,7 +158,7 @@ impl Scene {
             let remedy = if entry.plastic {
                 "give the material law = \"j2\""
             } else {
-                "for law = \"j2\" there is \"plastic-impact\""
+                "for law = \"j2\" there is \"j2-impact\""
             };
             return Err(self.error("exact.kind", what, remedy));
         }

@@ -2,7 +2,7 @@
 
 use super::{Condition, Scene};
 use crate::error::Result;
-use crate::scene::suggest;
+use crate::names;
 
 impl Scene {
     /// Checks that every group of the scene exists in the mesh, and that the mesh has no group of cells without
@@ -69,7 +69,7 @@ impl Scene {
         let remedy = match known[..] {
             _ if known.contains(&group) => return Ok(()),
             [] => format!("the mesh has no named group of {of}: name one there (a physical group of Gmsh)"),
-            _ => format!("{}its groups of {of} are {}", suggest::did_you_mean(group, &known), known.join(", ")),
+            _ => format!("{}its groups of {of} are {}", names::did_you_mean(group, &known), known.join(", ")),
         };
         Err(self.error(key, format!("the mesh has no group \"{group}\""), remedy))
     }

@@ -5,7 +5,6 @@
 //! and lists what exists. A scene knows neither mesh nor solver: names become types elsewhere. Units are SI.
 
 mod exact;
-mod expression;
 mod groups;
 mod laws;
 mod names;
@@ -17,7 +16,6 @@ mod read;
 mod reader;
 pub mod regrid;
 mod sets;
-mod suggest;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -27,12 +25,12 @@ use toml_edit::{Document, DocumentMut};
 
 use crate::cloud::seed;
 use crate::error::{Error, Place, Result};
+use crate::expression::Expression;
 pub use crate::observe::Field;
 use crate::operators::Limits;
 pub use crate::riemann::Flux;
 use crate::run::Limits as WatchLimits;
 pub use exact::{Exact, SOLUTIONS};
-pub use expression::{Expression, FUNCTIONS, Fault};
 pub use laws::{LAWS, Law, Parameter};
 pub use names::{Histories, Method, Sweeps};
 use origin::{Origin, Part};

@@ -5,10 +5,10 @@ use std::ops::RangeInclusive;
 
 use toml_edit::{Item, TableLike, Value};
 
-use super::expression::Expression;
 use super::origin::{Origin, Part};
-use super::suggest;
 use crate::error::{Error, Result};
+use crate::expression::Expression;
+use crate::names;
 
 /// What values a number may take.
 #[derive(Debug, Clone, Copy)]
@@ -95,7 +95,7 @@ impl<'a> Reader<'a> {
     /// The error of a required key that is not there.
     pub(super) fn missing(&self, key: &str, remedy: &str) -> Error {
         let given: Vec<&str> = self.table.iter().map(|(key, _)| key).filter(|key| !self.known.contains(key)).collect();
-        if let Some(misspelt) = suggest::nearest(key, &given) {
+        if let Some(misspelt) = names::nearest(key, &given) {
             let what = format!("unknown key `{misspelt}` in {}", self.title);
             let remedy = format!("did you mean `{key}`? {} needs it: {remedy}", self.title);
             return self.origin.error(&self.below(&[misspelt]), Part::Key, what, remedy);
@@ -265,7 +265,7 @@ impl<'a> Reader<'a> {
             return Err(self.origin.error(&path, Part::Value, what, format!("built are {list}")));
         }
         let known: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
-        let remedy = format!("{}there are {list}", suggest::did_you_mean(text, &known));
+        let remedy = format!("{}there are {list}", names::did_you_mean(text, &known));
         Err(self.origin.error(&path, Part::Value, format!("unknown `{}` \"{}\"", keys[0], short(text)), remedy))
     }
 
@@ -291,7 +291,7 @@ impl<'a> Reader<'a> {
             return self.origin.error(&path, Part::Key, what, format!("{} knows {known}", self.title));
         }
         let what = format!("unknown key `{}` in {}", short(key), self.title);
-        let remedy = format!("{}{} knows {known}", suggest::did_you_mean(key, &self.known), self.title);
+        let remedy = format!("{}{} knows {known}", names::did_you_mean(key, &self.known), self.title);
         self.origin.error(&path, Part::Key, what, remedy)
     }
 
