@@ -54,3 +54,9 @@ pub static LAWS: &[Entry<Build>] = &[
         },
     },
 ];
+
+/// Whether a law has internal variables.
+pub fn has_memory(entry: &Entry<Build>) -> bool {
+    // What they are does not depend on the parameters.
+    !(entry.build)(&super::example(entry.parameters)).internal().is_empty()
+}

@@ -18,6 +18,13 @@ pub struct Layout {
     pub on_nodes: bool,
 }
 
+impl Layout {
+    /// Whether it is the points of a file.
+    pub fn is_file(&self) -> bool {
+        matches!(self.points, Points::File)
+    }
+}
+
 /// How points are made.
 pub enum Points {
     /// Cell by cell.

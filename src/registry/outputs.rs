@@ -1,6 +1,6 @@
 //! What is recorded, `[[output]] kind = ..`.
 
-use super::{ANY, Chosen, Entry, FINITE, Fault, Field, Form, Parameter, Preset, Values};
+use super::{ANY, Chosen, Entry, FINITE, Fault, Field, Form, Parameter, Preset, Value, Values};
 use crate::error::Result;
 use crate::material::Law;
 use crate::mesh::Mesh;
@@ -15,9 +15,9 @@ pub struct Output {
     pub snapshots: bool,
     /// Steps between two records where the scene gives no times; none: it has to.
     pub every_steps: Option<usize>,
-    /// Steps between two records of a run whose scene has no such output; none: it has none then. Such a kind stands once in
-    /// a scene.
-    pub always: Option<usize>,
+    /// Of a kind that every run has, and a scene at most once: what a run has whose scene does not name it, as a change of the
+    /// defaults and the steps between two records.
+    pub always: Option<fn(&mut Values) -> usize>,
     /// Whether it needs the displacement, beside that of a field.
     pub displacement: fn(&Values) -> bool,
     /// Whether the mesh has what it records.
@@ -119,7 +119,10 @@ pub static OUTPUTS: &[Entry<Output>] = &[
             has_fields: false,
             snapshots: false,
             every_steps: Some(1),
-            always: Some(10),
+            always: Some(|defaults| {
+                defaults.set("balance", Value::Boolean(false));
+                10
+            }),
             // For the angular momentum.
             displacement: |of| of.boolean("balance"),
             check: |_, _| Ok(()),

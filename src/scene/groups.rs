@@ -1,6 +1,6 @@
 //! The groups that a scene names against those that exist.
 
-use super::{Condition, Scene};
+use super::Scene;
 use crate::error::Result;
 use crate::names;
 
@@ -24,8 +24,8 @@ impl Scene {
         self.check_exist("source", "cells", sources, cell_groups)?;
         self.check_exist("boundary", "boundary edges", boundaries.iter().copied(), edge_groups)?;
         for (i, boundary) in self.boundaries.iter().enumerate() {
-            let Condition::Periodic { partner } = &boundary.condition else { continue };
-            self.check_exists(&format!("boundary.{i}.partner"), "boundary edges", partner, edge_groups)?;
+            let Some((key, partner)) = boundary.partner() else { continue };
+            self.check_exists(&format!("boundary.{i}.{key}"), "boundary edges", partner, edge_groups)?;
             boundaries.push(Some(partner));
         }
         self.check_sources(cell_groups)?;

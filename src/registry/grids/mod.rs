@@ -9,7 +9,7 @@ mod rectangles;
 mod shift;
 mod strips;
 
-pub use files::Stored;
+pub use files::{Stored, copy};
 pub use fronts::fronts;
 pub use strips::FRONT;
 
