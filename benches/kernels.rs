@@ -8,8 +8,8 @@ use dgmpm::lane::{F8, Kernel, Lanes, Work, load_array, store_array};
 use dgmpm::material::{LinearElastic, Material, NeoHookean, Past, virgin};
 use dgmpm::mesh::map;
 use dgmpm::problem::Problem;
+use dgmpm::registry::Method;
 use dgmpm::riemann::{Acoustic, AcousticCurl, Medium, Riemann, Rusanov, Trace};
-use dgmpm::scene::Method;
 use dgmpm::step::Motion;
 use divan::{Bencher, black_box, counter::ItemsCount};
 

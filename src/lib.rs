@@ -73,6 +73,8 @@ pub mod chart;
 pub mod observe;
 pub mod run;
 pub mod exact;
+pub mod expression;
+pub mod registry;
 pub mod scene;
 pub mod problem;
 pub mod stability;

@@ -1,4 +1,5 @@
-//! Enums whose variants have names in scenes and results: each list is written once, where the enum stands.
+//! Names in scenes and results: enums whose variants have names, each list written once, where the enum stands; and for
+//! a name that does not exist the nearest one that does ("did you mean").
 
 /// An enum whose variants have names: `NAMES`, `name()` and serialisation as the name.
 macro_rules! names {
@@ -27,4 +28,35 @@ macro_rules! names {
             }
         }
     };
+}
+
+/// The name at an edit distance of at most a third of its length (and at least 1), if there is one.
+pub(crate) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
+    let distance = |name: &&str| strsim::damerau_levenshtein(&given.to_lowercase(), name);
+    let name = known.iter().copied().min_by_key(distance)?;
+    let allowed = (name.chars().count().max(given.chars().count()) / 3).max(1);
+    // a single letter is never a misspelling of another one
+    let alike = distance(&name) <= allowed && (name.len() > 1 || distance(&name) == 0);
+    alike.then_some(name)
+}
+
+/// "did you mean `name`? ", or nothing.
+pub(crate) fn did_you_mean(given: &str, known: &[&str]) -> String {
+    nearest(given, known).map(|name| format!("did you mean `{name}`? ")).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nearest_names() {
+        let known = ["method", "degree", "time_degree", "flux", "cfl"];
+        assert_eq!(nearest("metod", &known), Some("method"));
+        assert_eq!(nearest("Degree", &known), Some("degree"));
+        assert_eq!(nearest("clf", &known), Some("cfl"));
+        assert_eq!(nearest("banana", &known), None);
+        assert_eq!(nearest("z", &["x", "y", "sin"]), None);
+        assert_eq!(nearest("a", &[]), None);
+    }
 }

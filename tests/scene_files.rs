@@ -122,10 +122,10 @@ const BAD: &[Row] = &[
     ),
     (
         "[curl]",
-        "[exact]\nkind = \"plastic-impact\"\n[curl]",
+        "[exact]\nkind = \"j2-impact\"\n[curl]",
         31,
         8,
-        &["\"plastic-impact\" is no solution for the law \"neo-hookean\"", "j2"],
+        &["\"j2-impact\" is no solution for the law \"neo-hookean\"", "j2"],
     ),
     ("cfl = 0.4", "cfl = 0", 35, 7, &["`cfl` is 0", "greater than 0"]),
     ("end = 1e-3", "end = -1e-3", 37, 7, &["`end` is -0.001"]),

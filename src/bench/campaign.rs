@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::io::pending::write_text;
 use crate::io::read_mesh;
 use crate::lane::Kernel;
-use crate::scene::Method;
+use crate::registry::Method;
 use crate::study::machine;
 use std::path::{Path, PathBuf};
 

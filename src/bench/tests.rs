@@ -6,7 +6,7 @@ use crate::chart::{Chart, Line, Marker, Scale, save};
 use crate::lane::counted::{self, Counts, SLOTS};
 use crate::lane::{F8, Kernel, Lanes, Work, load_array};
 use crate::material::{LinearElastic, Material, NeoHookean, Past, virgin};
-use crate::scene::Method;
+use crate::registry::Method;
 use crate::step::Phase;
 use crate::step::sweeps::{Sweep, Sweeps};
 

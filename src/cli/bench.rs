@@ -4,7 +4,7 @@ use super::print::say;
 use super::threads;
 use crate::bench::{self, Campaign, Domain, Figures, Length, Setup};
 use crate::error::{Error, Result};
-use crate::scene::Method;
+use crate::registry::Method;
 use std::path::PathBuf;
 
 /// Arguments.

@@ -5,7 +5,7 @@
 mod errors;
 mod linear_bar;
 mod manufactured;
-mod plastic_impact;
+mod j2_impact;
 mod riemann;
 mod simple_wave;
 mod vortex;
@@ -13,9 +13,9 @@ mod wall_impact;
 
 pub use crate::lane::Dual;
 pub use errors::{Errors, Norms, Values, compare, errors};
+pub use j2_impact::J2Impact;
 pub use linear_bar::LinearBar;
 pub use manufactured::Manufactured;
-pub use plastic_impact::PlasticImpact;
 pub use riemann::Riemann;
 pub use simple_wave::SimpleWave;
 pub use vortex::Vortex;

@@ -1,6 +1,5 @@
 //! Where names become types: from a scene to mesh, laws, conditions, sources, time integration and scheme.
 
-use crate::basis::TimeBasis;
 use crate::boundary::{self, Data};
 use crate::cloud::Cloud;
 use crate::error::Result;
@@ -8,22 +7,15 @@ use crate::exact::ExactForce;
 use crate::io::read_mesh;
 use crate::lane::Kernel;
 use crate::mesh::{self, Link, Mesh};
-use crate::operators::{Needs, Operators, Sampling};
+use crate::operators::{Limits, Needs, Operators, Sampling};
+use crate::registry::data;
+use crate::registry::methods::Samples;
+use crate::run::Limits as WatchLimits;
 use crate::run::Settings;
-use crate::scene::{self, Boundary, Condition, Curl, Expression, Mesh as Source, Method, Scene, Step, Sweeps};
-use crate::source::{self, BodyForce};
-use crate::step::{Control, Method as Integration, Relax, Scheme, Sweeps as Picard, Tableau, cfl};
+use crate::scene::{self, Boundary, Mesh as Source, Scene, Step};
+use crate::source;
+use crate::step::{Control, Law, Method as Integration, Scheme, cfl};
 use std::sync::Arc;
-
-/// An expression as data of boundary or source.
-fn data(expression: &Expression) -> Data {
-    let expression = expression.clone();
-    Arc::new(move |x, t| expression.eval(x, t))
-}
-
-fn pair(value: &[Expression; 2]) -> [Data; 2] {
-    value.each_ref().map(data)
-}
 
 impl Scene {
     /// The mesh of the scene, its groups checked.
@@ -42,10 +34,10 @@ impl Scene {
 
     /// Pairs of boundary groups (by number) that are periodic to each other, each once.
     pub fn periodic_groups(&self, mesh: &Mesh) -> Vec<[usize; 2]> {
-        let number = |name: &String| mesh.edge_groups.iter().position(|group| group == name);
+        let number = |name: &str| mesh.edge_groups.iter().position(|group| group == name);
         let mut pairs: Vec<[usize; 2]> = Vec::new();
         for boundary in &self.boundaries {
-            let Condition::Periodic { partner } = &boundary.condition else { continue };
+            let Some((_, partner)) = boundary.partner() else { continue };
             // `check_mesh` has refused groups that the mesh lacks.
             let (Some(a), Some(b)) = (number(&boundary.group), number(partner)) else { continue };
             if !pairs.contains(&[b, a]) {
@@ -73,29 +65,35 @@ impl Scene {
 
     /// What the method needs of the operators.
     pub fn needs<'a>(&self, cloud: &'a Cloud) -> Needs<'a> {
-        let sampling = match self.scheme.method {
-            Method::AderDgmpm => Some(Sampling::Cloud(cloud)),
-            Method::AderDgfem => Some(Sampling::Nodes),
-            Method::RkDgfem => None,
-        };
+        let sampling = self.scheme.method.build().samples.map(|samples| match samples {
+            Samples::Points => Sampling::Cloud(cloud),
+            Samples::Nodes => Sampling::Nodes,
+        });
         // Constants have no curl.
-        let curl_free = self.scheme.degree > 0 && self.curl != Curl::Off;
+        let curl_free = self.scheme.degree > 0 && self.curl.build().relax.is_some();
         Needs { degree: self.scheme.degree, sampling, curl_free }
     }
 
     /// Time integration.
     pub fn integration(&self) -> Integration {
-        let (n, n_t) = (self.scheme.degree, self.scheme.time_degree);
-        match self.scheme.method {
-            Method::RkDgfem => Integration::RungeKutta(Tableau::of_degree(n_t)),
-            Method::AderDgmpm | Method::AderDgfem => {
-                let time = TimeBasis::new(n_t);
-                let sweeps = match self.scheme.sweeps {
-                    Sweeps::Ladder => Picard::ladder(&time),
-                    Sweeps::Paper => Picard::paper(&time, n.max(n_t) + 1),
-                };
-                Integration::Ader { time, sweeps }
-            }
+        let scene::Scheme { method, degree, time_degree, sweeps, .. } = self.scheme;
+        (method.build().integration)(degree, time_degree, sweeps)
+    }
+
+    /// The laws, in the order of the `[[material]]` tables.
+    pub fn laws(&self) -> Vec<Law> {
+        self.materials.iter().map(|material| (material.law.build())(&material.law.values)).collect()
+    }
+
+    /// Beyond what the points of a cell are replaced.
+    pub fn limits_of_cells(&self) -> Limits {
+        let scene::Limits { face_lebesgue, condition } = self.limits;
+        let usual = Limits::of_degree(self.scheme.degree);
+        Limits {
+            lebesgue: face_lebesgue.unwrap_or(usual.lebesgue),
+            condition: condition.unwrap_or(usual.condition),
+            // Limits that are given hold for lattices too.
+            lattices: face_lebesgue.is_some() || condition.is_some(),
         }
     }
 
@@ -108,18 +106,14 @@ impl Scene {
         // `check_mesh` has refused groups without a condition; no face looks at that of a periodic group.
         let free = || Arc::new(boundary::Free) as Arc<dyn boundary::Boundary>;
         let boundaries = mesh.edge_groups.iter().map(|group| condition(group).unwrap_or_else(free)).collect();
-        let control = |relax, alpha| Control { relax, rate: alpha * self.scheme.degree as f64 };
-        let curl = match self.curl {
-            Curl::Rotation { alpha } => Some(control(Relax::Rotation, alpha)),
-            Curl::Lcf { alpha } => Some(control(Relax::Gradient, alpha)),
-            Curl::Off => None,
-        };
+        let rate = self.curl.values.number("alpha") * self.scheme.degree as f64;
+        let curl = self.curl.build().relax.map(|relax| Control { relax, rate });
         let mut sources: Vec<_> = self.sources.iter().map(|s| self.source(s)).collect();
         // A solution has a body force everywhere and always, or nowhere.
         if let Some(exact) = self.build_exact().filter(|exact| exact.body_force([0.0; 2], 0.0).is_some()) {
             sources.push(Arc::new(ExactForce(exact)));
         }
-        let (laws, flux) = (self.laws(), self.scheme.flux.build());
+        let (laws, flux) = (self.laws(), (self.scheme.flux.build().make)());
         let scheme = Scheme::new(operators, laws, self.integration(), flux, boundaries)?;
         let scheme = scheme.with_sources(sources).with_kernel(kernel);
         // Constants have no curl.
@@ -131,15 +125,14 @@ impl Scene {
 
     fn source(&self, source: &scene::Source) -> Arc<dyn source::Source> {
         let named = |m: &scene::Material| source.group.is_some() && m.group == source.group;
-        Arc::new(BodyForce { value: pair(&source.value), material: self.materials.iter().position(named) })
+        (source.source.build())(&source.source.values, self.materials.iter().position(named))
     }
 
     /// The speeds that conditions prescribe: the group, and one component (along N) or both, m/s.
     pub fn prescribed_speeds(&self) -> Vec<(&str, Vec<Data>)> {
-        let of = |boundary: &Boundary| match &boundary.condition {
-            Condition::Wall { speed } => vec![data(speed)],
-            Condition::Velocity(value) => pair(value).to_vec(),
-            _ => vec![],
+        let of = |boundary: &Boundary| {
+            let speeds = boundary.condition.expressions().filter(|(parameter, _)| parameter.unit == "m/s");
+            speeds.flat_map(|(_, all)| all).map(data).collect()
         };
         self.boundaries.iter().map(|boundary| (boundary.group.as_str(), of(boundary))).collect()
     }
@@ -170,22 +163,14 @@ impl Scene {
                 format!("give scheme.safety up to 1 (0.9 is the default), or scheme.cfl up to {allowed:.3}"),
             ));
         }
-        Ok(Settings { end: self.end, courant: safety * limit, watch: self.watch })
+        Ok(Settings {
+            end: self.end,
+            courant: safety * limit,
+            watch: self.watch.map(|scene::Watch { warn, stop }| WatchLimits { warn, stop }),
+        })
     }
 }
 
-/// The registry of boundary conditions.
 fn condition(boundary: &Boundary) -> Arc<dyn boundary::Boundary> {
-    let zero = || data(&Expression::number(0.0));
-    match &boundary.condition {
-        // The faces of a periodic group are inner faces: nothing asks for its condition.
-        Condition::Free | Condition::Periodic { .. } => Arc::new(boundary::Free),
-        Condition::Symmetry => Arc::new(boundary::Wall { speed: None }),
-        Condition::Wall { speed } if speed.constant() == Some(0.0) => Arc::new(boundary::Wall { speed: None }),
-        Condition::Wall { speed } => Arc::new(boundary::Wall { speed: Some(data(speed)) }),
-        Condition::Clamped => Arc::new(boundary::Velocity { value: [zero(), zero()] }),
-        Condition::Velocity(value) => Arc::new(boundary::Velocity { value: pair(value) }),
-        Condition::Traction(value) => Arc::new(boundary::Traction { value: pair(value) }),
-        Condition::Absorbing => Arc::new(boundary::Absorbing),
-    }
+    (boundary.condition.build().make)(&boundary.condition.values)
 }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::operators::carry::{Cause, Deficient, stand_on_nodes};
 use crate::operators::{Certificate, Class, Limits, Line};
-use crate::scene::{Histories, Method, Scene};
+use crate::scene::{Histories, Scene};
 
 /// Cells that a list names before it only counts.
 const NAMED: usize = 3;
@@ -52,7 +52,7 @@ pub fn memory(body: &Body) -> Option<String> {
 pub fn warning(problem: &Problem) -> Option<String> {
     let Problem { scene, body, .. } = problem;
     let at_points = |cell: &usize| scene.materials[body.material[*cell]].histories == Some(Histories::Points);
-    if scene.scheme.method != Method::AderDgmpm {
+    if !scene.scheme.method.has_points() {
         return None;
     }
     let nodes = Line::new(scene.scheme.degree).nodes();
@@ -74,7 +74,8 @@ pub fn word(scene: &Scene, body: &Body) -> Option<String> {
     let count = |cause: Cause| all.iter().filter(|d| d.cause == cause).count();
     let causes = [Cause::Few, Cause::Rank, Cause::Lebesgue, Cause::Condition];
     let causes = causes.into_iter().map(|cause| (count(cause), cause)).filter(|(count, _)| *count > 0);
-    let causes: Vec<String> = causes.map(|(count, cause)| format!("{count} {}", why(cause, &scene.limits))).collect();
+    let causes: Vec<String> =
+        causes.map(|(count, cause)| format!("{count} {}", why(cause, &scene.limits_of_cells()))).collect();
     let mut worst = all.clone();
     worst.sort_by(|a, b| {
         (a.given.rank, b.given.lebesgue).partial_cmp(&(b.given.rank, a.given.lebesgue)).unwrap_or(a.cell.cmp(&b.cell))
@@ -115,11 +116,11 @@ fn figures(mesh: &Mesh, cell: usize, c: &Certificate) -> String {
 /// # Errors
 /// The cells with their figures, and the remedy.
 pub fn strict(scene: &Scene, body: &Body) -> Result<()> {
-    if scene.scheme.method != Method::AderDgmpm {
+    if !scene.scheme.method.has_points() {
         return Ok(());
     }
     let m = scene.scheme.degree + 1;
-    let limits = Limits { lattices: true, ..scene.limits };
+    let limits = Limits { lattices: true, ..scene.limits_of_cells() };
     let kept = body.certificates.iter().copied().enumerate();
     let lattices = kept.filter(|(_, c)| c.class != Class::Deficient && limits.cause(c, m * m).is_some());
     // Where the law has memory nothing is asked of the points.

@@ -1,9 +1,11 @@
 //! Which expression of a scene is not finite: looked for once a run has lost stability, so that a run that goes well does
 //! not pay for it.
 
+use crate::expression::Expression;
 use crate::mesh::Mesh;
 use crate::operators::Neighbour;
-use crate::scene::{Condition, Expression, Scene};
+use crate::registry::Chosen;
+use crate::scene::Scene;
 use crate::step::{Scheme, Site};
 use std::collections::BTreeSet;
 
@@ -38,7 +40,7 @@ impl Scene {
     /// The expression of a boundary or a source that is not finite at one of the `times` of a step, in the cell that lost
     /// stability or so near that it can have got there in this step; the nearest first.
     pub fn culprit(&self, mesh: &Mesh, scheme: &Scheme, cell: usize, times: &[f64]) -> Option<Culprit> {
-        let sources: Vec<(Option<&String>, [Named; 2])> = self.expressions_of_sources();
+        let sources: Vec<(Option<&String>, Vec<Named>)> = self.expressions_of_sources();
         // What comes in at a stage is in the neighbours at the next one.
         around(scheme, cell, scheme.stages() + 1).into_iter().find_map(|cell| {
             let boundary = self.culprit_at_faces(mesh, scheme, cell, times);
@@ -69,39 +71,36 @@ impl Scene {
 
     fn expressions_of_boundary(&self, group: &str) -> Vec<Named<'_>> {
         let Some(number) = self.boundaries.iter().position(|boundary| boundary.group == group) else { return vec![] };
-        match &self.boundaries[number].condition {
-            Condition::Wall { speed } => {
-                let (key, name) = (format!("boundary.{number}.speed"), format!("the speed of the wall `{group}`"));
-                vec![Named { key, name, expression: speed }]
-            }
-            Condition::Velocity(value) => {
-                pair(value, &format!("boundary.{number}"), &format!("the velocity of the boundary `{group}`")).into()
-            }
-            Condition::Traction(value) => {
-                pair(value, &format!("boundary.{number}"), &format!("the traction on the boundary `{group}`")).into()
-            }
-            _ => vec![],
-        }
+        let of = format!(" `{group}`");
+        all(&self.boundaries[number].condition, &format!("boundary.{number}"), &of)
     }
 
-    fn expressions_of_sources(&self) -> Vec<(Option<&String>, [Named<'_>; 2])> {
-        let mut all = Vec::new();
+    fn expressions_of_sources(&self) -> Vec<(Option<&String>, Vec<Named<'_>>)> {
+        let mut named = Vec::new();
         for (number, source) in self.sources.iter().enumerate() {
             let on = source.group.as_ref().map_or(String::new(), |group| format!(" on `{group}`"));
-            let both = pair(&source.value, &format!("source.{number}"), &format!("the body force{on}"));
-            all.push((source.group.as_ref(), both));
+            named.push((source.group.as_ref(), all(&source.source, &format!("source.{number}"), &on)));
         }
-        all
+        named
     }
 }
 
-/// The two components of a vector.
-fn pair<'a>(value: &'a [Expression; 2], key: &str, name: &str) -> [Named<'a>; 2] {
-    [0, 1].map(|k| Named {
-        key: format!("{key}.value.{k}"),
-        name: format!("component {} of {name},", k + 1),
-        expression: &value[k],
-    })
+/// All expressions of what a table has chosen; the parameter that they belong to is named by the line that describes it.
+fn all<'a, B>(chosen: &'a Chosen<B>, table: &str, of: &str) -> Vec<Named<'a>> {
+    let mut named = Vec::new();
+    for (parameter, expressions) in chosen.expressions() {
+        for (k, expression) in expressions.iter().enumerate() {
+            let (key, name) = match expressions.len() {
+                1 => (format!("{table}.{}", parameter.name), format!("{}{of}", parameter.about)),
+                _ => {
+                    let name = format!("component {} of {}{of},", k + 1, parameter.about);
+                    (format!("{table}.{}.{k}", parameter.name), name)
+                }
+            };
+            named.push(Named { key, name, expression });
+        }
+    }
+    named
 }
 
 /// The cells that are at most so many neighbours away from a cell, nearest first.

@@ -1,10 +1,18 @@
-//! Whether the materials of a mesh stand where the exact solution of the scene has them.
+//! The exact solution of a scene, and whether the materials of a mesh stand where it has them.
 
 use crate::error::Result;
+use crate::exact::Exact;
 use crate::mesh::{Mesh, map};
 use crate::scene::Scene;
+use std::sync::Arc;
 
 impl Scene {
+    /// The exact solution that the scene names.
+    pub fn build_exact(&self) -> Option<Arc<dyn Exact>> {
+        let solution = &self.exact.as_ref()?.solution;
+        (solution.build().make)(&solution.values, &self.laws())
+    }
+
     /// Whether the materials stand in the mesh where the exact solution has them: the first `[[material]]` is its first.
     ///
     /// # Errors

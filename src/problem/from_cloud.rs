@@ -4,9 +4,9 @@ use super::points::Given;
 use crate::error::Result;
 use crate::io::grid::{self, Kind};
 use crate::mesh::{Mesh, map};
-use crate::observe::Solution;
+use crate::observe::{Field, Solution};
 use crate::operators::{carry, from_points};
-use crate::scene::{Field, Method, Scene};
+use crate::scene::Scene;
 use crate::state::{State, UNKNOWNS};
 use crate::step::Scheme;
 
@@ -17,7 +17,7 @@ impl Scene {
         let components = self.components();
         let values = self.unknowns_of_points(mesh, scheme, &given, components)?;
         let (line, n) = (&scheme.operators.line, scheme.operators.nodes());
-        let cells = from_points(mesh, line, &given.cloud, &self.limits, &values, components)?;
+        let cells = from_points(mesh, line, &given.cloud, &self.limits_of_cells(), &values, components)?;
         let material = self.material_of_cells(mesh);
         for (cell, values) in cells.chunks(components * n).enumerate() {
             let density = scheme.laws[material[cell]].density();
@@ -39,12 +39,12 @@ impl Scene {
     /// of the nearest one, never interpolated.
     fn internal_of_points(&self, mesh: &Mesh, scheme: &Scheme, given: &Given) -> Result<Vec<f64>> {
         let material = self.material_of_cells(mesh);
-        let on_nodes = match self.scheme.method {
-            Method::AderDgmpm => self.on_nodes(&material),
+        let on_nodes = match self.scheme.method.has_points() {
+            true => self.on_nodes(&material),
             // Nodes are to the cloud what virtual points are.
-            Method::AderDgfem | Method::RkDgfem => vec![true; material.len()],
+            false => vec![true; material.len()],
         };
-        let carried = carry(mesh, &scheme.operators.line, &given.cloud, &self.limits, &on_nodes)?;
+        let carried = carry(mesh, &scheme.operators.line, &given.cloud, &self.limits_of_cells(), &on_nodes)?;
         let of_law = |law: usize| {
             let variables = scheme.laws[law].variables().iter();
             let names = variables.flat_map(|v| v.numbers.iter().map(|(suffix, _)| format!("{}{suffix}", v.name)));

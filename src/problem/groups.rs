@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::mesh::parts::EdgeCount;
-use crate::scene::{Boundary, Condition, Scene};
+use crate::scene::{Boundary, Scene};
 
 impl Scene {
     /// Checks the groups of a mesh: as [`Scene::check_groups`], where groups with edges inside of the body, or with none at
@@ -26,10 +26,7 @@ impl Scene {
     fn check_conditions(&self, mesh: &Mesh, counts: &[EdgeCount]) -> Result<()> {
         let named = |(i, boundary): (usize, &Boundary)| {
             let own = (format!("boundary.{i}.group"), boundary.group.clone());
-            let partner = match &boundary.condition {
-                Condition::Periodic { partner } => Some((format!("boundary.{i}.partner"), partner.clone())),
-                _ => None,
-            };
+            let partner = boundary.partner().map(|(key, group)| (format!("boundary.{i}.{key}"), group.to_owned()));
             [Some(own), partner]
         };
         for (key, name) in self.boundaries.iter().enumerate().flat_map(named).flatten() {

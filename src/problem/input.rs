@@ -1,14 +1,13 @@
 //! The input of a run in its folder, so that the folder can be moved and run again.
 
 use super::{Files, Problem};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::io::cloud_file::{self, More};
-use crate::io::{mesh_file, pending, read_mesh};
+use crate::io::{mesh_file, pending};
 use crate::observe::{Solution, export};
 use crate::operators::Certificate;
+use crate::registry::grids::copy;
 use crate::run::Folder;
-use crate::scene::portable;
-use crate::scene::regrid::NewMesh;
 use std::path::Path;
 
 /// Writes scene, mesh and cloud into a run folder. Paths of the scene are replaced by those of the folder. The initial state is
@@ -40,26 +39,10 @@ pub fn write_input(problem: &Problem, files: &Files, folder: &Folder, certificat
 fn write_later_grids(problem: &Problem, folder: &Folder) -> Result<()> {
     let scene = &problem.scene;
     for (rule, regrid) in scene.regrids.iter().enumerate() {
-        match &regrid.grid {
-            NewMesh::Files(files) => {
-                for (k, file) in files.iter().enumerate() {
-                    let mesh = read_mesh(&scene.resolve(file))?;
-                    mesh_file::write_mesh(&folder.root.join(portable::regrid_file(rule, k)), &mesh)?;
-                }
-            }
-            NewMesh::Geometry { path, .. } => {
-                copy(&scene.resolve(path), &folder.root.join(portable::geometry_file(rule)))?;
-            }
-            _ => {}
+        let (values, Some(stored)) = (&regrid.grid.values, regrid.grid.build().files) else { continue };
+        for (k, file) in values.texts(regrid.grid.name()).iter().enumerate() {
+            (stored.store)(&scene.resolve(Path::new(file)), &folder.root.join((stored.name)(rule, k)))?;
         }
     }
     Ok(())
-}
-
-/// Copies a file, unless it is there already.
-fn copy(from: &Path, to: &Path) -> Result<()> {
-    if from.canonicalize().ok().is_some_and(|from| to.canonicalize().is_ok_and(|to| to == from)) {
-        return Ok(());
-    }
-    std::fs::copy(from, to).map(drop).map_err(|why| Error::output(to, why))
 }

@@ -1,12 +1,12 @@
 //! Why a run lost stability, what is left of it, and what may help: that depends on what the scene has switched on.
 
 use super::Problem;
-use crate::cloud::seed;
 use crate::error::{Error, Result};
 use crate::operators::Sampling;
 use crate::operators::certificate::certify;
+use crate::registry::fluxes;
 use crate::run::{Lost, Report};
-use crate::scene::{Condition, Curl, Flux, Layout, Method, Scene};
+use crate::scene::{Boundary, Scene};
 use crate::state::State;
 use crate::step::{LossKind, cfl};
 use serde_json::{Value, json};
@@ -98,8 +98,8 @@ impl Case<'_> {
     }
 
     fn curl(&self) -> Option<String> {
-        let off = matches!(self.problem.scene.curl, Curl::Off) && self.problem.scene.scheme.degree > 0;
-        off.then(|| "[curl] control is \"off\", and a body in compression is then unstable: leave it out".to_owned())
+        let hint = self.problem.scene.curl.build().when_lost;
+        (!hint.is_empty() && self.problem.scene.scheme.degree > 0).then(|| hint.to_owned())
     }
 
     fn regrid(&self) -> Option<String> {
@@ -127,16 +127,11 @@ impl Case<'_> {
 
     /// Whether boundaries or sources can do work.
     fn is_driven(&self) -> bool {
-        let still = |condition: &Condition| match condition {
-            Condition::Wall { speed } => speed.constant() == Some(0.0),
-            Condition::Velocity(value) | Condition::Traction(value) => value.iter().all(|v| v.constant() == Some(0.0)),
-            Condition::Symmetry
-            | Condition::Free
-            | Condition::Clamped
-            | Condition::Absorbing
-            | Condition::Periodic { .. } => true,
+        let still = |boundary: &Boundary| {
+            let mut all = boundary.condition.expressions().flat_map(|(_, all)| all);
+            all.all(|expression| expression.constant() == Some(0.0))
         };
-        !self.problem.scheme.sources.is_empty() || !self.problem.scene.boundaries.iter().all(|b| still(&b.condition))
+        !self.problem.scheme.sources.is_empty() || !self.problem.scene.boundaries.iter().all(still)
     }
 
     fn energy(&self) -> Option<String> {
@@ -156,8 +151,7 @@ impl Case<'_> {
     fn points(&self) -> Option<String> {
         let Scene { scheme, cloud, .. } = &self.problem.scene;
         let memory = self.has_memory();
-        let gauss = Layout::InCells(seed::Layout::Gauss);
-        if scheme.method != Method::AderDgmpm || cloud.layout == gauss {
+        if !scheme.method.has_points() || cloud.layout.build().on_nodes {
             return None;
         }
         let (mesh, line) = (&self.problem.body.mesh, &self.problem.scheme.operators.line);
@@ -173,23 +167,20 @@ impl Case<'_> {
     }
 
     fn flux(&self) -> Option<String> {
-        let flux = self.problem.scene.scheme.flux;
-        let why = match flux {
-            Flux::Dual if self.has_memory() => return None,
-            Flux::Dual => {
-                let why = "damps all jumps of F, and holds some corners that are crushed";
-                return Some(format!("scheme.flux = \"rusanov\" {why}"));
-            }
-            _ if self.has_memory() => "makes energy where a law flows",
-            Flux::Rusanov => "makes energy in large motions of a nearly incompressible body",
-            _ => "holds less in compression",
-        };
-        Some(format!("scheme.flux = \"{}\" {why}: leave it out, for the default \"dual\"", flux.name()))
+        let flux = &self.problem.scene.scheme.flux;
+        let why = (flux.build().when_lost)(self.has_memory())?;
+        let (name, default) = (flux.name(), fluxes::DEFAULT);
+        Some(match name == default {
+            true => why.to_owned(),
+            false => format!("scheme.flux = \"{name}\" {why}: leave it out, for the default \"{default}\""),
+        })
     }
 
     fn law(&self) -> Option<String> {
-        let material = &self.problem.scene.materials[self.problem.body.material[self.lost.loss.cell]];
-        (material.law == "linear-elastic").then(|| {
+        let law = self.problem.body.material[self.lost.loss.cell];
+        // A law of the small strain is the same in tension and in compression.
+        let is_stiffening = self.problem.scheme.laws[law].is_objective();
+        (!is_stiffening).then(|| {
             "a linear law does not stiffen where it is crushed: give law = \"neo-hookean\" for large strains".to_owned()
         })
     }

@@ -42,7 +42,6 @@ pub use cost::Cost;
 pub use culprit::Culprit;
 pub use ended::Ended;
 pub use export::Export;
-pub use grids::Present;
 pub use input::write_input;
 pub use points::{Given, Sampled, read_points};
 pub use rebuild::{Moved, Regrids};

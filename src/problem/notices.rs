@@ -6,7 +6,7 @@ use crate::boundary::Data;
 use crate::mesh::parts::{EdgeCount, Part, parts};
 use crate::mesh::{BoundaryEdge, Link, Mesh};
 use crate::operators::{Blocks, Neighbour};
-use crate::scene::{Curl, Scene};
+use crate::scene::Scene;
 use crate::state::State;
 use crate::step::{Scheme, Survey};
 
@@ -38,13 +38,8 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     all.extend(fast_start(mesh, scheme, state, survey));
     all.extend(fast_boundary(scene, mesh, scheme));
     all.extend(thin(mesh, blocks, scene.scheme.degree));
-    if matches!(scene.curl, Curl::Lcf { .. }) {
-        all.push(
-            "[curl] control = \"lcf\" makes energy on free, thin, soft and yielding bodies; it is there for comparison, the \
-             default is \"rotation\""
-                .to_owned(),
-        );
-    }
+    let notice = scene.curl.build().notice;
+    all.extend((!notice.is_empty()).then(|| notice.to_owned()));
     if *steps <= 1.0 {
         all.push(format!(
             "the run is one step: it ends {:.3e} s after its start, and a step is {dt:.3e} s; times are in s, moduli in Pa, \

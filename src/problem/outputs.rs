@@ -2,37 +2,42 @@
 
 use crate::error::Result;
 use crate::mesh::Mesh;
-use crate::observe::{Contents, Field, Ledger, Line, Observer, Outside, Samples, Schedule, Snapshots};
+use crate::observe::{Contents, Field, Observer, Schedule};
+use crate::registry::outputs::{Recording, fields_of};
+use crate::registry::{Chosen, OUTPUTS, defaults};
 use crate::run::Folder;
-use crate::scene::{Output, Scene, What, When};
+use crate::scene::{Output, Scene, When};
 use crate::state::UNKNOWNS;
-
-/// Steps between two rows of the ledger, where the scene does not say.
-const LEDGER_STEPS: usize = 10;
 
 impl Scene {
     /// Whether an output asks for the displacement: as a field, or for the angular momentum of a ledger.
     pub fn wants_displacement(&self) -> bool {
-        let balance = |output: &Output| output.what == What::Ledger { balance: true };
-        self.outputs.iter().any(|output| output.fields.contains(&Field::Displacement) || balance(output))
+        let laws = self.laws();
+        let wants = |output: &Output| {
+            let shown = fields_of(&output.what, &laws).contains(&Field::Displacement);
+            shown || (output.what.build().displacement)(&output.what.values)
+        };
+        self.outputs.iter().any(wants)
+    }
+
+    /// The fields that an output shows.
+    pub fn fields_of(&self, output: &Output) -> Vec<Field> {
+        fields_of(&output.what, &self.laws())
     }
 
     /// Components of the state: with the displacement where an output asks for it or the flux looks at it.
     pub(super) fn components(&self) -> usize {
-        if self.wants_displacement() { UNKNOWNS + 2 } else { self.scheme.flux.build().components() }
+        if self.wants_displacement() { UNKNOWNS + 2 } else { (self.scheme.flux.build().make)().components() }
     }
 
-    /// Whether all lines of the outputs lie in the mesh.
+    /// Whether the mesh has what the outputs record.
     ///
     /// # Errors
     /// A line that leaves it, with its place in the scene.
     pub fn check_lines(&self, mesh: &Mesh) -> Result<()> {
         for (i, output) in self.outputs.iter().enumerate() {
-            let Some(samples) = samples(output) else { continue };
-            samples.check(mesh).map_err(|outside| {
-                let key = if outside.sample == 0 { "from" } else { "to" };
-                self.error(&format!("output.{i}.{key}"), outside.to_string(), Outside::REMEDY)
-            })?;
+            let check = (output.what.build().check)(&output.what.values, mesh);
+            check.map_err(|fault| self.error(&format!("output.{i}.{}", fault.key), fault.what, fault.remedy))?;
         }
         Ok(())
     }
@@ -46,44 +51,30 @@ impl Scene {
         let dissipated = self.laws().iter().any(|law| law.has_memory());
         let drift = self.components() > UNKNOWNS;
         let contents = Contents { drift, dissipated, regrids: !self.regrids.is_empty(), balance: false };
+        let laws = self.laws();
+        let make = |name: &str, what: &Chosen<_>, schedule: Schedule| {
+            let (material, fields) = (&material[..], fields_of(what, &laws));
+            (what.build().make)(&what.values, Recording { name, fields, schedule, mesh, material, folder, contents })
+        };
         let mut out: Vec<Box<dyn Observer>> = Vec::new();
         for output in &self.outputs {
-            let schedule = schedule(output);
-            out.push(match (output.what, samples(output)) {
-                (What::Ledger { balance }, _) => {
-                    let contents = Contents { balance, ..contents };
-                    Box::new(Ledger::create(&folder.ledger(), schedule.with_end(), contents)?)
-                }
-                (_, Some(samples)) => {
-                    Box::new(Line::create(&folder.line(&output.name), mesh, &material, &samples, schedule)?)
-                }
-                _ => Box::new(Snapshots::new(&folder.snapshots(), schedule)),
-            });
+            out.push(make(&output.name, &output.what, schedule_of(&output.when, output.exact_times))?);
         }
-        if !self.outputs.iter().any(|output| matches!(output.what, What::Ledger { .. })) {
-            let schedule = Schedule::new(crate::observe::When::EverySteps(LEDGER_STEPS), false).with_end();
-            out.push(Box::new(Ledger::create(&folder.ledger(), schedule, contents)?));
+        for entry in OUTPUTS.iter().filter(|entry| self.outputs.iter().all(|output| output.what.name() != entry.name)) {
+            let Some(always) = entry.build.always else { continue };
+            let mut values = defaults(entry.parameters, self.scheme.degree);
+            let schedule = schedule_of(&When::EverySteps(always(&mut values)), false);
+            out.push(make(entry.name, &Chosen { entry, values }, schedule)?);
         }
         Ok(out)
     }
 
     /// The fields that an export shows: those of the first `fields` output, or all that the state has.
     pub fn export_fields(&self) -> Vec<Field> {
-        let asked = self.outputs.iter().find(|output| output.what == What::Fields).map(|output| output.fields.clone());
-        let laws = self.laws();
+        let (laws, snapshots) = (self.laws(), self.outputs.iter().find(|output| output.what.build().snapshots));
         let all = || Field::of_laws(&laws).into_iter().filter(|field| *field != Field::Displacement).collect();
-        asked.unwrap_or_else(all)
+        snapshots.map_or_else(all, |output| fields_of(&output.what, &laws))
     }
-}
-
-/// What a line output samples.
-fn samples(output: &Output) -> Option<Samples> {
-    let What::Line { from, to, samples } = output.what else { return None };
-    Some(Samples { ends: [from, to], count: samples, fields: output.fields.clone() })
-}
-
-fn schedule(output: &Output) -> Schedule {
-    schedule_of(&output.when, output.exact_times)
 }
 
 /// When something is done.

@@ -1,6 +1,6 @@
 //! From a scene to the material points, and to those that the scheme samples on.
 
-use crate::cloud::{Cloud, Locator, Pattern, body, from_points, seed};
+use crate::cloud::{Cloud, Locator, from_points, seed};
 use crate::error::{Error, Place, Result};
 use crate::io::grid::Field;
 use crate::io::{cloud_file, points, store};
@@ -8,7 +8,8 @@ use crate::mesh::Mesh;
 use crate::operators::carry::{Cause, Deficient};
 use crate::operators::certificate::{Certificate, Class, certify};
 use crate::operators::{Line, Sampling, carry};
-use crate::scene::{Body, Cloud as Choice, Histories, Layout, Material, Method, Scene};
+use crate::registry::layouts::{InCell, Points};
+use crate::scene::{Cloud as Choice, Histories, Material, Scene};
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -72,9 +73,9 @@ impl Scene {
     /// # Errors
     /// A cloud file that does not fit the mesh.
     pub fn given_points(&self, mesh: &Mesh) -> Result<Given> {
-        match &self.cloud.layout {
-            Layout::File(path) => read_points(&self.resolve(path), mesh),
-            _ => Ok(Given { cloud: self.seeded(mesh), ..Given::default() }),
+        match self.cloud_path() {
+            Some(path) => read_points(&path, mesh),
+            None => Ok(Given { cloud: self.seeded(mesh), ..Given::default() }),
         }
     }
 
@@ -84,24 +85,29 @@ impl Scene {
         // Materials of one pattern are one body to it.
         let mut bodies: Vec<(&Choice, Cloud)> = Vec::new();
         for choice in self.materials.iter().map(|m| &m.cloud) {
-            if let Layout::Body(body) = &choice.layout
+            if let Points::Body(points) = choice.layout.build().points
                 && bodies.iter().all(|(known, _)| *known != choice)
             {
                 let member: Vec<bool> = material.iter().map(|&m| self.materials[m].cloud == *choice).collect();
-                bodies.push((choice, body.pattern(mesh, &member, choice.per_direction).seed(mesh, &member)));
+                bodies.push((choice, points(&choice.layout.values, mesh, &member, choice.per_direction)));
             }
         }
+        let degree = self.scheme.degree;
+        let usual = move |k: usize, cell: usize| seed::default_layout(degree).points(k, cell);
+        let in_cell = |m: &Material| match m.cloud.layout.build().points {
+            Points::Cells(points) => Some(points(&m.cloud.layout.values)),
+            Points::Body(_) => None,
+            // Only [cloud] can name a file, and it has none here.
+            Points::File => Some(Box::new(usual) as _),
+        };
+        let in_cell: Vec<Option<InCell>> = self.materials.iter().map(in_cell).collect();
         let push = |cell: usize, xi: &mut Vec<[f64; 2]>| {
             let choice = &self.materials[material[cell]].cloud;
-            match choice.layout {
-                Layout::InCells(layout) => xi.extend(layout.points(choice.per_direction, cell)),
-                Layout::Body(_) => {
+            match &in_cell[material[cell]] {
+                Some(points) => xi.extend(points(choice.per_direction, cell)),
+                None => {
                     let own = bodies.iter().filter(|(known, _)| *known == choice);
                     own.for_each(|(_, cloud)| xi.extend_from_slice(cloud.of(cell)));
-                }
-                // Only [cloud] can name a file, and it has none here.
-                Layout::File(_) => {
-                    xi.extend(seed::default_layout(self.scheme.degree).points(choice.per_direction, cell));
                 }
             }
         };
@@ -115,12 +121,12 @@ impl Scene {
     /// A part of the body without any point.
     pub fn sample(&self, mesh: &Mesh, cloud: Cloud) -> Result<Sampled> {
         let line = Line::new(self.scheme.degree);
-        if self.scheme.method != Method::AderDgmpm {
+        if !self.scheme.method.has_points() {
             let certificates = certify(mesh, &line, Sampling::Nodes)?;
             return Ok(Sampled { cloud, certificates, ..Sampled::default() });
         }
         let memory = self.on_nodes(&self.material_of_cells(mesh));
-        let found = carry(mesh, &line, &cloud, &self.limits, &memory)?;
+        let found = carry(mesh, &line, &cloud, &self.limits_of_cells(), &memory)?;
         let mut certificates = found.certificates;
         for (certificate, _) in certificates.iter_mut().zip(&memory).filter(|(_, memory)| **memory) {
             certificate.class = Class::Nodes;
@@ -149,7 +155,7 @@ impl Scene {
     /// not keep the histories at the points. Empty: no cell does. `material` has the number of the material of each cell.
     pub fn on_nodes(&self, material: &[usize]) -> Vec<bool> {
         let of = |m: &Material| m.histories == Some(Histories::Nodes);
-        if self.scheme.method != Method::AderDgmpm || !self.materials.iter().any(of) {
+        if !self.scheme.method.has_points() || !self.materials.iter().any(of) {
             return vec![];
         }
         material.iter().map(|&m| of(&self.materials[m])).collect()
@@ -158,9 +164,9 @@ impl Scene {
     /// Where the scheme samples and internal variables stand, as [`Scheme::places`](crate::step::Scheme::places) has it: the
     /// material points, or the Gauss nodes where the method has no points or the law has memory.
     pub fn places<'a>(&self, cloud: &'a Cloud, material: &[usize]) -> Cow<'a, Cloud> {
-        let on_nodes = match self.scheme.method {
-            Method::AderDgmpm => self.on_nodes(material),
-            Method::AderDgfem | Method::RkDgfem => vec![true; material.len()],
+        let on_nodes = match self.scheme.method.has_points() {
+            true => self.on_nodes(material),
+            false => vec![true; material.len()],
         };
         if !on_nodes.contains(&true) {
             return Cow::Borrowed(cloud);
@@ -170,21 +176,5 @@ impl Scene {
             xi.extend_from_slice(if on_nodes[cell] { &nodes } else { cloud.of(cell) });
         };
         Cow::Owned(Cloud::of_cells(material.len(), push))
-    }
-}
-
-impl Body {
-    /// The `angle` of a lattice that names none, degrees: not that of any usual grid, nor of its diagonals.
-    pub const ANGLE: f64 = 30.0;
-
-    /// The pattern with its spacing: where the scene gives none, as many points as k^2 a cell in the mean.
-    fn pattern(&self, mesh: &Mesh, member: &[bool], k: usize) -> Pattern {
-        let usual = || body::mean_spacing(mesh, member, k);
-        match *self {
-            Body::PoissonDisk { seed, spacing } => {
-                Pattern::PoissonDisk { seed, spacing: spacing.unwrap_or_else(|| Pattern::DISK * usual()) }
-            }
-            Body::Rotated { angle, spacing } => Pattern::Rotated { angle, spacing: spacing.unwrap_or_else(usual) },
-        }
     }
 }

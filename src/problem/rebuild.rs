@@ -4,7 +4,7 @@
 
 use super::outcome::{Clock, Outcome, columns};
 use super::outputs::schedule_of;
-use super::{Body, Present, Problem, Recent};
+use super::{Body, Problem, Recent};
 use crate::boundary::{Boundary, Free};
 use crate::cloud::Cloud;
 use crate::error::Result;
@@ -14,10 +14,11 @@ use crate::io::snapshot::GridFiles;
 use crate::mesh::Mesh;
 use crate::observe::{Schedule, View};
 use crate::operators::{Limits, Operators};
+use crate::registry::grids::Present;
 use crate::regrid::points::{Demand, Placed, Policy, histories, place};
 use crate::regrid::{self, Field, Grid, Transfer};
 use crate::run::{Folder, Pause};
-use crate::scene::{Method, Scene, What, When};
+use crate::scene::{Scene, When};
 use crate::state::State;
 use crate::step::{Scheme, Totals};
 use rstar::{RTree, primitives::GeomWithData};
@@ -85,7 +86,7 @@ impl<'a> Regrids<'a> {
             scene.regrids.iter().map(|rule| schedule_of(&rule.when, rule.exact_times)).collect();
         // `every` and `every_steps` count from the start, whose grid is that of [mesh]; `at` may name it.
         for (schedule, rule) in schedules.iter_mut().zip(&scene.regrids) {
-            if !matches!(rule.when, When::At(_)) && rule.criteria == Default::default() {
+            if !matches!(rule.when, When::At(_)) && rule.criteria.are_none() {
                 schedule.due(start.step, start.time, 0.0);
             }
         }
@@ -134,7 +135,7 @@ impl<'a> Regrids<'a> {
 
     /// Writes mesh and points beside those of the start, each grid once; nothing where no output takes snapshots.
     fn write(&mut self, body: &Body, step: usize) -> Result<GridFiles> {
-        let snapshots = self.scene.outputs.iter().any(|output| output.what == What::Fields);
+        let snapshots = self.scene.outputs.iter().any(|output| output.what.build().snapshots);
         let Some(folder) = self.folder.filter(|_| snapshots) else { return Ok(GridFiles::after(step)) };
         let key = key_of_files(body);
         if let Some(files) = self.files.get(&key) {
@@ -285,9 +286,9 @@ impl Problem {
             Policy::Keep => Cloud::default(),
             Policy::Enrich | Policy::Layout => scene.build_cloud(to.mesh)?,
         };
-        let samples = scene.scheme.method == Method::AderDgmpm;
+        let samples = scene.scheme.method.has_points();
         let histories = scheme.laws.iter().any(|law| law.has_memory());
-        let (limits, virtual_points) = (&scene.limits, &old.virtual_points[..]);
+        let (limits, virtual_points) = (&scene.limits_of_cells(), &old.virtual_points[..]);
         let line = &scheme.operators.line;
         let on_nodes = &scene.on_nodes(to.material);
         let demand = Demand { line, policy, fresh: &fresh, samples, limits, virtual_points, histories, on_nodes };

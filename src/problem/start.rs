@@ -1,8 +1,9 @@
 //! The initial state of a scene: from its expressions, its exact solution, a snapshot or the fields of its cloud.
 
 use crate::error::Result;
+use crate::expression::Expression;
 use crate::mesh::{self, Mesh};
-use crate::scene::{self, Expression, Scene};
+use crate::scene::{self, Scene};
 use crate::state::State;
 use crate::step::Scheme;
 use crate::tensor;

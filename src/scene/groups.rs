@@ -1,8 +1,8 @@
 //! The groups that a scene names against those that exist.
 
-use super::{Condition, Scene};
+use super::Scene;
 use crate::error::Result;
-use crate::scene::suggest;
+use crate::names;
 
 impl Scene {
     /// Checks that every group of the scene exists in the mesh, and that the mesh has no group of cells without
@@ -24,8 +24,8 @@ impl Scene {
         self.check_exist("source", "cells", sources, cell_groups)?;
         self.check_exist("boundary", "boundary edges", boundaries.iter().copied(), edge_groups)?;
         for (i, boundary) in self.boundaries.iter().enumerate() {
-            let Condition::Periodic { partner } = &boundary.condition else { continue };
-            self.check_exists(&format!("boundary.{i}.partner"), "boundary edges", partner, edge_groups)?;
+            let Some((key, partner)) = boundary.partner() else { continue };
+            self.check_exists(&format!("boundary.{i}.{key}"), "boundary edges", partner, edge_groups)?;
             boundaries.push(Some(partner));
         }
         self.check_sources(cell_groups)?;
@@ -69,7 +69,7 @@ impl Scene {
         let remedy = match known[..] {
             _ if known.contains(&group) => return Ok(()),
             [] => format!("the mesh has no named group of {of}: name one there (a physical group of Gmsh)"),
-            _ => format!("{}its groups of {of} are {}", suggest::did_you_mean(group, &known), known.join(", ")),
+            _ => format!("{}its groups of {of} are {}", names::did_you_mean(group, &known), known.join(", ")),
         };
         Err(self.error(key, format!("the mesh has no group \"{group}\""), remedy))
     }

@@ -4,10 +4,7 @@
 //! mesh is checked by [`Scene::check_mesh`]. Every message has file, line and column (or the `--set` at fault)
 //! and lists what exists. A scene knows neither mesh nor solver: names become types elsewhere. Units are SI.
 
-mod exact;
-mod expression;
 mod groups;
-mod laws;
 mod names;
 mod origin;
 mod outputs;
@@ -17,23 +14,18 @@ mod read;
 mod reader;
 pub mod regrid;
 mod sets;
-mod suggest;
+mod tables;
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use toml_edit::{Document, DocumentMut};
 
-use crate::cloud::seed;
 use crate::error::{Error, Place, Result};
-pub use crate::observe::Field;
-use crate::operators::Limits;
-use crate::run::Limits as WatchLimits;
-pub use exact::{Exact, SOLUTIONS};
-pub use expression::{Expression, FUNCTIONS, Fault};
-pub use laws::{LAWS, Law, Parameter};
-pub use names::{Flux, Histories, Method, Sweeps};
+use crate::expression::Expression;
+use crate::registry::controls::Control;
+use crate::registry::{self, Chosen, Method, Sweeps};
+pub use names::Histories;
 use origin::{Origin, Part};
 
 /// A whole scene.
@@ -58,7 +50,7 @@ pub struct Scene {
     /// Body forces.
     pub sources: Vec<Source>,
     /// The control of the curl of F.
-    pub curl: Curl,
+    pub curl: Chosen<Control>,
     /// Method, degrees, flux, step size.
     pub scheme: Scheme,
     /// Time of the initial state, in s; default 0.
@@ -68,7 +60,7 @@ pub struct Scene {
     /// What is recorded when.
     pub outputs: Vec<Output>,
     /// The watch over the energy; none where it is off.
-    pub watch: Option<WatchLimits>,
+    pub watch: Option<Watch>,
     /// When the run gets another grid.
     pub regrids: Vec<regrid::Regrid>,
     #[serde(skip)]
@@ -94,41 +86,18 @@ pub enum Mesh {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cloud {
     /// The pattern.
-    pub layout: Layout,
+    pub layout: Chosen<registry::layouts::Layout>,
     /// Points per direction k (k^2 in a cell; in the mean, for a pattern of the body); without meaning for a file.
     pub per_direction: usize,
 }
 
-/// Where the points come from.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Layout {
-    /// Cell by cell.
-    InCells(seed::Layout),
-    /// Through the body, without regard to its cells.
-    Body(Body),
-    /// The points of a file, as written in the scene ([`Scene::resolve`] makes it a path).
-    File(PathBuf),
-}
-
-/// A pattern of a whole body.
+/// Limits for the points of a cell, where the scene gives them; beyond them virtual points take their place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Body {
-    /// Random points that keep their distance.
-    PoissonDisk {
-        /// Seed of the generator.
-        seed: u64,
-        /// Least distance, m; none: as many points as `per_direction` says.
-        spacing: Option<f64>,
-    },
-    /// A lattice turned against the grid.
-    Rotated {
-        /// In degrees.
-        angle: f64,
-        /// Distance of neighbours, m; none: as many points as `per_direction` says.
-        spacing: Option<f64>,
-    },
+pub struct Limits {
+    /// Largest face Lebesgue constant.
+    pub face_lebesgue: Option<f64>,
+    /// Largest condition number of the fit.
+    pub condition: Option<f64>,
 }
 
 /// A material on a group of cells.
@@ -136,16 +105,21 @@ pub enum Body {
 pub struct Material {
     /// The cell group; `None`: all cells (then it is the only material).
     pub group: Option<String>,
-    /// Name of the law, one of [`LAWS`].
-    pub law: String,
-    /// rho0, in kg/m^3.
-    pub density: f64,
-    /// The law's parameters: all that [`LAWS`] lists, within their ranges.
-    pub parameters: BTreeMap<String, f64>,
+    /// The law and its parameters, rho0 among them.
+    pub law: Chosen<registry::laws::Build>,
     /// Where its points stand.
     pub cloud: Cloud,
     /// Where its internal variables stand; `None`: its law has none.
     pub histories: Option<Histories>,
+}
+
+/// The exact solution of a scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Exact {
+    /// The solution and its parameters.
+    pub solution: Chosen<registry::solutions::Solution>,
+    /// Whether it gives the initial state: where the scene has no `[initial]`.
+    pub initial: bool,
 }
 
 /// The state at the start; its expressions depend on x and y only.
@@ -167,35 +141,15 @@ pub struct Boundary {
     /// The group of edges.
     pub group: String,
     /// What holds there.
-    pub condition: Condition,
+    pub condition: Chosen<registry::conditions::Condition>,
 }
 
-/// What holds on a boundary.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Condition {
-    /// Rigid frictionless wall, bilateral.
-    Wall {
-        /// v.N of the wall (N the outward normal), in m/s; default 0.
-        speed: Expression,
-    },
-    /// Symmetry line: a wall at rest.
-    Symmetry,
-    /// No traction.
-    Free,
-    /// v = 0.
-    Clamped,
-    /// Prescribed v, in m/s.
-    Velocity([Expression; 2]),
-    /// Prescribed P N, in Pa.
-    Traction([Expression; 2]),
-    /// Nothing comes in.
-    Absorbing,
-    /// The body goes on at another group, which a translation takes this one to.
-    Periodic {
-        /// The other group; it needs no entry of its own.
-        partner: String,
-    },
+impl Boundary {
+    /// The group that this one is joined to, after the key that names it.
+    pub fn partner(&self) -> Option<(&'static str, &str)> {
+        let key = self.condition.build().partner?;
+        Some((key, self.condition.values.text(key)))
+    }
 }
 
 /// A force on the volume.
@@ -203,26 +157,17 @@ pub enum Condition {
 pub struct Source {
     /// The cell group; `None`: everywhere.
     pub group: Option<String>,
-    /// Force per unit mass b, in m/s^2.
-    pub value: [Expression; 2],
+    /// The force.
+    pub source: Chosen<registry::sources::Build>,
 }
 
-/// The control of the curl of F (the instability in compression).
+/// Shares of energy made out of nothing at which the watch over the energy does something.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Curl {
-    /// Rotation and deviator of F - Pi F, at a rate tied to compression; the default.
-    Rotation {
-        /// alpha; default 3, from N = 4 on 6.
-        alpha: f64,
-    },
-    /// Relaxed locally curl-free projection, theta = 1 - exp(-alpha N c_p dt / h); makes energy, for comparison.
-    Lcf {
-        /// alpha; default 3, from N = 4 on 6.
-        alpha: f64,
-    },
-    /// None.
-    Off,
+pub struct Watch {
+    /// The program warns.
+    pub warn: f64,
+    /// The run stops.
+    pub stop: f64,
 }
 
 /// Method, degrees, flux and step size.
@@ -235,7 +180,7 @@ pub struct Scheme {
     /// N_T, degree in time, 0 to 6; default N.
     pub time_degree: usize,
     /// The flux on inner faces; default dual.
-    pub flux: Flux,
+    pub flux: Chosen<registry::fluxes::Flux>,
     /// The size of a step.
     pub step: Step,
     /// The predictor's sweeps; default ladder where N_T = N, else paper.
@@ -258,35 +203,11 @@ pub struct Output {
     /// Its name, unique, fit for a file name; default the kind.
     pub name: String,
     /// What.
-    pub what: What,
+    pub what: Chosen<registry::outputs::Output>,
     /// When.
     pub when: When,
     /// Whether steps are shortened to meet the times.
     pub exact_times: bool,
-    /// Which fields (none for a ledger).
-    pub fields: Vec<Field>,
-}
-
-/// What is recorded.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum What {
-    /// Snapshots of grid and points, for export.
-    Fields,
-    /// Samples along a line: s_i = i L / (samples - 1).
-    Line {
-        /// First point, reference coordinates in m.
-        from: [f64; 2],
-        /// Last point.
-        to: [f64; 2],
-        /// Number of samples, at least 2.
-        samples: usize,
-    },
-    /// Energy and momentum.
-    Ledger {
-        /// With the balance of energy by cause.
-        balance: bool,
-    },
 }
 
 /// When something is recorded.
@@ -375,10 +296,17 @@ impl Scene {
 
     /// The cloud file, if the cloud is one.
     pub fn cloud_path(&self) -> Option<PathBuf> {
-        match &self.cloud.layout {
-            Layout::File(path) => Some(self.resolve(path)),
-            _ => None,
-        }
+        let layout = &self.cloud.layout;
+        layout.build().is_file().then(|| self.resolve(Path::new(layout.values.text("path"))))
+    }
+
+    /// Whether the exact solution holds for the materials and until the end of the run.
+    fn check_exact(&self) -> Result<()> {
+        let Some(exact) = &self.exact else { return Ok(()) };
+        let law = |material: &Material| (material.law.name(), (material.law.build())(&material.law.values));
+        let laws: Vec<_> = self.materials.iter().map(law).collect();
+        registry::solutions::check(&exact.solution, &laws, self.end)
+            .map_err(|fault| self.error(&fault.key, fault.what, fault.remedy))
     }
 
     /// Where the value of a key stands.

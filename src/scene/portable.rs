@@ -1,8 +1,8 @@
 //! The text of a scene for its run folder, so that the folder can be moved and run again.
 
-use super::points::KEYS;
-use super::regrid::NewMesh;
-use super::{Layout, Mesh, Scene};
+use super::points::keys;
+use super::{Mesh, Scene};
+use crate::registry::Value;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, value};
 
 impl Scene {
@@ -17,9 +17,9 @@ impl Scene {
                 put(table, "file", "mesh.h5");
             });
         }
-        if cloud || matches!(self.cloud.layout, Layout::File(_)) {
+        if cloud || self.cloud.layout.build().is_file() {
             in_table(&mut document, "cloud", |table| {
-                KEYS.iter().filter(|key| **key != "layout").for_each(|key| drop(table.remove(key)));
+                keys().filter(|key| *key != "layout").for_each(|key| drop(table.remove(key)));
                 put(table, "layout", "file");
                 put(table, "path", "cloud.h5");
             });
@@ -31,13 +31,11 @@ impl Scene {
         for (rule, regrid) in self.regrids.iter().enumerate() {
             let entry = document.get_mut("regrid").and_then(|list| list.get_mut(rule));
             let Some(table) = entry.and_then(Item::as_table_like_mut) else { continue };
-            match &regrid.grid {
-                NewMesh::Files(files) => {
-                    let names = (0..files.len()).map(|k| regrid_file(rule, k)).collect::<Array>();
-                    table.insert("mesh", value(names));
-                }
-                NewMesh::Geometry { .. } => put(table, "geo", &geometry_file(rule)),
-                _ => {}
+            let (key, Some(stored)) = (regrid.grid.name(), regrid.grid.build().files) else { continue };
+            let names = (0..regrid.grid.values.texts(key).len()).map(|k| (stored.name)(rule, k));
+            match regrid.grid.values.get(key) {
+                Some(Value::Texts(_)) => drop(table.insert(key, value(names.collect::<Array>()))),
+                _ => names.for_each(|name| put(table, key, &name)),
             }
         }
         document.to_string()
@@ -52,16 +50,6 @@ impl Scene {
         });
         document.to_string()
     }
-}
-
-/// The file of the k-th mesh of a `[[regrid]]` in a run folder.
-pub fn regrid_file(rule: usize, k: usize) -> String {
-    format!("regrid_{rule}_{k}.h5")
-}
-
-/// The file of the geometry of a `[[regrid]]` in a run folder.
-pub fn geometry_file(rule: usize) -> String {
-    format!("regrid_{rule}.geo")
 }
 
 /// Changes the table of a name, made where it is missing.
@@ -88,10 +76,10 @@ fn put(table: &mut dyn toml_edit::TableLike, key: &str, text: &str) {
 fn remove_points_of_materials(document: &mut DocumentMut) {
     let Some(materials) = document.get_mut("material") else { return };
     if let Some(tables) = materials.as_array_of_tables_mut() {
-        tables.iter_mut().for_each(|table| KEYS.iter().for_each(|key| drop(table.remove(key))));
+        tables.iter_mut().for_each(|table| keys().for_each(|key| drop(table.remove(key))));
     } else if let Some(list) = materials.as_array_mut() {
         let tables = list.iter_mut().filter_map(|entry| entry.as_inline_table_mut());
-        tables.for_each(|table: &mut InlineTable| KEYS.iter().for_each(|key| drop(table.remove(key))));
+        tables.for_each(|table: &mut InlineTable| keys().for_each(|key| drop(table.remove(key))));
     }
 }
 

@@ -1,18 +1,17 @@
-//! A document to a [`Scene`]: the keys of each table, with their ranges and defaults.
-
-use std::path::PathBuf;
-
-use toml_edit::Document;
+//! A document to a [`Scene`]: which tables it has, and what holds between the keys of a table.
 
 use super::origin::Origin;
 use super::points::General;
-use super::reader::{Check, FINITE, POSITIVE, Reader};
-use super::{
-    Boundary, Cloud, Condition, Curl, Expression, Flux, Initial, LAWS, Layout, Material, Mesh, Method, Scene, Scheme,
-    Source, Step, Sweeps,
-};
+use super::reader::Reader;
+use super::tables::{self, SAFETY, WATCHED};
+use super::{Boundary, Cloud, Exact, Initial, Material, Mesh, Scene, Scheme, Source, Step, Watch};
 use crate::error::Result;
-use crate::run::Limits;
+use crate::expression::Expression;
+use crate::registry::{
+    CONDITIONS, CONTROLS, Chosen, FLUXES, LAWS, METHODS, SOLUTIONS, SOURCES, Sweeps, controls, defaults, find, laws,
+};
+use std::path::PathBuf;
+use toml_edit::Document;
 
 /// Reads a whole scene.
 pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> {
@@ -37,11 +36,12 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     let need = |key: &'static str, remedy: &str| root.missing(key, remedy);
     let mesh = mesh(mesh_table.as_mut().ok_or_else(|| need("mesh", "add [mesh] with file = \"name.msh\""))?)?;
     let scheme = scheme(scheme_table.as_mut().ok_or_else(|| need("scheme", "add [scheme] with method and degree"))?)?;
-    let general = super::points::cloud(cloud_table.as_mut(), scheme.degree)?;
+    let degree = scheme.degree;
+    let general = super::points::cloud(cloud_table.as_mut(), degree)?;
     if material_tables.is_empty() {
         return Err(need("material", "add [[material]] with law, density and the law's parameters"));
     }
-    let materials = materials(&mut material_tables, &general, scheme.degree)?;
+    let materials = materials(&mut material_tables, &general, degree)?;
     let (start, end) = time(time_table.as_mut().ok_or_else(|| need("time", "add [time] with end, in s"))?)?;
     let scene = Scene {
         title: title.unwrap_or_else(|| origin.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),
@@ -49,35 +49,30 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         initial: initial(initial_table.as_mut(), &general.cloud)?,
         cloud: general.cloud,
         limits: general.limits,
-        exact: super::exact::exact(exact_table.as_mut(), initial_table.is_none())?,
-        boundaries: boundaries(boundary_tables)?,
-        sources: source_tables.into_iter().map(source).collect::<Result<_>>()?,
-        curl: curl(curl_table.as_mut(), scheme.degree)?,
+        exact: exact(exact_table.as_mut(), initial_table.is_none(), degree)?,
+        boundaries: boundaries(boundary_tables, degree)?,
+        sources: source_tables.into_iter().map(|table| source(table, degree)).collect::<Result<_>>()?,
+        curl: curl(curl_table.as_mut(), degree)?,
         scheme,
         start,
         end,
-        outputs: super::outputs::outputs(output_tables, &super::laws::laws(&materials), start)?,
+        outputs: super::outputs::outputs(output_tables, &materials, start, degree)?,
         materials,
         watch: watch(watch_table.as_mut())?,
-        regrids: super::regrid::regrids(regrid_tables)?,
+        regrids: super::regrid::regrids(regrid_tables, degree)?,
         origin: Origin::default(),
     };
     Ok(Scene { origin, ..scene })
 }
 
 fn mesh(table: &mut Reader) -> Result<Mesh> {
-    let file = table.text("file")?;
-    let rectangle = table.table("rectangle")?;
+    let values = table.values(tables::MESH)?;
     table.finish()?;
-    match (file, rectangle) {
+    match (values.maybe_text("file"), values.table("rectangle")) {
         (Some(file), None) => Ok(Mesh::File(PathBuf::from(file))),
-        (None, Some(mut rectangle)) => {
-            let size = rectangle.array("size", POSITIVE)?;
-            let cells = rectangle.array("cells", CELLS)?;
-            rectangle.finish()?;
-            let size = size.ok_or_else(|| rectangle.missing("size", "for instance size = [3.0, 3.0], in m"))?;
-            let cells = cells.ok_or_else(|| rectangle.missing("cells", "for instance cells = [30, 30]"))?;
-            Ok(Mesh::Rectangle { size, cells: cells.map(|n: f64| n as usize) })
+        (None, Some(rectangle)) => {
+            let (size, cells) = crate::registry::grids::rectangle(rectangle);
+            Ok(Mesh::Rectangle { size, cells })
         }
         (Some(_), Some(_)) => {
             Err(table.wrong("rectangle", "[mesh] has both `file` and `rectangle`", "keep one of them"))
@@ -86,32 +81,27 @@ fn mesh(table: &mut Reader) -> Result<Mesh> {
     }
 }
 
-const CELLS: Check =
-    Check { range: "whole, from 1 to 100000", holds: |n| n.fract() == 0.0 && (1.0..=100_000.0).contains(&n) };
-
 fn scheme(table: &mut Reader) -> Result<Scheme> {
     table.later(&["impedance"]);
-    let method = table.choice("method", Method::NAMES, &[])?;
-    let degree = table.integer("degree", 0..=6)?;
-    let time_degree = table.integer("time_degree", 0..=6)?;
-    let flux = table.choice("flux", Flux::NAMES, &[])?.unwrap_or(Flux::Dual);
-    let cfl = table.number("cfl", POSITIVE)?;
-    let safety = table.number("safety", POSITIVE)?;
-    let sweeps = table.choice("sweeps", Sweeps::NAMES, &[])?;
+    let mut values = table.values(tables::SCHEME)?;
     table.finish()?;
-    let names = "\"ader-dgmpm\", \"ader-dgfem\" or \"rk-dgfem\"";
-    let method = method.ok_or_else(|| table.missing("method", &format!("choose {names}")))?;
-    let degree = degree.ok_or_else(|| table.missing("degree", "the degree N of the cells, 0 to 6"))?;
-    let step = match (cfl, safety) {
+    table.complete(tables::SCHEME, &mut values, 0)?;
+    let (method, flux) = (find(METHODS, values.text("method")), find(FLUXES, values.text("flux")));
+    // Both names have been found in their lists.
+    let method = method.unwrap_or(&METHODS[0]).build.method;
+    let flux = Chosen { entry: flux.unwrap_or(&FLUXES[0]), values: Default::default() };
+    let degree = values.integer("degree");
+    let step = match (values.maybe("cfl"), values.maybe("safety")) {
         (Some(cfl), None) => Step::Cfl(cfl),
-        (None, safety) => Step::Safety(safety.unwrap_or(0.9)),
+        (None, safety) => Step::Safety(safety.unwrap_or(SAFETY)),
         (Some(_), Some(_)) => {
             let remedy = "cfl is the paper's dt = cfl h / ((2N+1) c), safety a share of the measured limit: keep one";
             return Err(table.wrong("safety", "[scheme] has both `cfl` and `safety`", remedy));
         }
     };
-    let time_degree = time_degree.unwrap_or(degree);
-    let sweeps = match sweeps {
+    let time_degree = values.maybe_integer("time_degree").unwrap_or(degree);
+    let named = |name: &str| Sweeps::NAMES.iter().find(|(known, _)| *known == name).map(|(_, sweeps)| *sweeps);
+    let sweeps = match values.maybe_text("sweeps").and_then(named) {
         Some(Sweeps::Ladder) if time_degree != degree => {
             let what = format!("the ladder needs time_degree = degree, and here they are {time_degree} and {degree}");
             let remedy = "give sweeps = \"paper\" (the default where the degrees differ), or equal degrees";
@@ -144,26 +134,13 @@ fn materials(tables: &mut [Reader], general: &General, degree: usize) -> Result<
 
 fn material(table: &mut Reader, general: &General, degree: usize) -> Result<Material> {
     let group = table.text("group")?;
-    let laws: Vec<(&str, usize)> = LAWS.iter().enumerate().map(|(i, law)| (law.name, i)).collect();
-    let names: Vec<String> = laws.iter().map(|(name, _)| format!("\"{name}\"")).collect();
-    let law = table.choice("law", &laws, &[])?;
-    let law = law.ok_or_else(|| table.missing("law", &format!("there are {}", names.join(", "))))?;
-    let law = &LAWS[law];
-    let density = table.number("density", POSITIVE)?;
-    let mut given = Vec::new();
-    for parameter in law.parameters {
-        given.push((parameter, table.number(parameter.name, parameter.check)?));
-    }
-    let (cloud, histories) = super::points::of_material(table, general, law, degree)?;
+    let law = table.entry(&tables::LAW, LAWS)?;
+    let mut values = table.values(law.parameters)?;
+    let (cloud, histories) = super::points::of_material(table, general, law.name, laws::has_memory(law), degree)?;
     table.finish()?;
-    let density = density.ok_or_else(|| table.missing("density", "the density at t = 0, in kg/m^3"))?;
-    let mut parameters = std::collections::BTreeMap::new();
-    for (parameter, value) in given {
-        let remedy = format!("law \"{}\": {}, {} {}", law.name, parameter.name, parameter.check.range, parameter.unit);
-        let value = value.ok_or_else(|| table.missing(parameter.name, remedy.trim_end()))?;
-        parameters.insert(parameter.name.to_owned(), value);
-    }
-    Ok(Material { group, law: law.name.to_owned(), density, parameters, cloud, histories })
+    table.complete(law.parameters, &mut values, degree)?;
+    table.fits(law, &values)?;
+    Ok(Material { group, law: Chosen { entry: law, values }, cloud, histories })
 }
 
 fn initial(table: Option<&mut Reader>, cloud: &Cloud) -> Result<Initial> {
@@ -176,17 +153,17 @@ fn initial(table: Option<&mut Reader>, cloud: &Cloud) -> Result<Initial> {
     };
     let Some(table) = table else { return Ok(initial) };
     if let Some(path) = table.text("snapshot")? {
-        if let Some(other) = ["velocity", "deformation"].into_iter().find(|key| table.has(key)) {
+        if let Some(other) = ["velocity", "deformation", "from"].into_iter().find(|key| table.has(key)) {
             let what = format!("[initial] has both `snapshot` and `{other}`");
             return Err(table.wrong(other, what, "keep one: a snapshot holds the whole state"));
         }
         table.finish()?;
         return Ok(Initial { snapshot: Some(PathBuf::from(path)), ..initial });
     }
-    initial.from_cloud = table.choice("from", &[("cloud", true)], &[])?.unwrap_or(false);
+    initial.from_cloud = table.values(&[tables::FROM])?.has("from");
     if initial.from_cloud {
         table.of_kind("cloud");
-        if !matches!(cloud.layout, Layout::File(_)) {
+        if !cloud.layout.build().is_file() {
             let remedy = "give [cloud] layout = \"file\" and path, such as the points_*.vtu of an export";
             return Err(table.wrong("from", "the points of this scene come from no file", remedy));
         }
@@ -221,42 +198,28 @@ fn at_start(table: &Reader, key: &str, expressions: &[Expression]) -> Result<()>
     }
 }
 
-#[derive(Clone, Copy)]
-enum Kind {
-    Wall,
-    Symmetry,
-    Free,
-    Clamped,
-    Velocity,
-    Traction,
-    Absorbing,
-    Periodic,
+/// Reads `[exact]`; `initial` says whether the solution gives the initial state.
+fn exact(table: Option<&mut Reader>, initial: bool, degree: usize) -> Result<Option<Exact>> {
+    let Some(table) = table else { return Ok(None) };
+    let entry = table.entry(&tables::EXACT[0], SOLUTIONS)?;
+    Ok(Some(Exact { solution: table.rest(entry, degree)?, initial }))
 }
 
-const KINDS: [(&str, Kind); 8] = [
-    ("wall", Kind::Wall),
-    ("symmetry", Kind::Symmetry),
-    ("free", Kind::Free),
-    ("clamped", Kind::Clamped),
-    ("velocity", Kind::Velocity),
-    ("traction", Kind::Traction),
-    ("absorbing", Kind::Absorbing),
-    ("periodic", Kind::Periodic),
-];
-
-fn boundaries(tables: Vec<Reader>) -> Result<Vec<Boundary>> {
+fn boundaries(tables: Vec<Reader>, degree: usize) -> Result<Vec<Boundary>> {
     let mut boundaries: Vec<Boundary> = Vec::with_capacity(tables.len());
     for mut table in tables {
-        let boundary = boundary(&mut table)?;
+        let boundary = boundary(&mut table, degree)?;
         if boundaries.iter().any(|other| other.group == boundary.group) {
             let what = format!("two [[boundary]] on the group \"{}\"", boundary.group);
             return Err(table.wrong("group", what, "a group of edges has one condition: remove one"));
         }
-        if matches!(&boundary.condition, Condition::Periodic { partner } if *partner == boundary.group) {
-            let what = format!("the group \"{}\" is its own `partner`", boundary.group);
-            return Err(table.wrong("partner", what, "name the group at the other side of the body"));
+        if let Some((key, partner)) = boundary.partner()
+            && partner == boundary.group
+        {
+            let what = format!("the group \"{partner}\" is its own `{key}`");
+            return Err(table.wrong(key, what, "name the group at the other side of the body"));
         }
-        if let Some(other) = boundaries.iter().find(|other| rivals(other, &boundary)) {
+        if let Some(other) = boundaries.iter().find(|other| disagree(other, &boundary)) {
             let what = format!("the conditions of \"{}\" and \"{}\" do not agree", other.group, boundary.group);
             let remedy = "a group has one `partner`, which is periodic to it or has no [[boundary]] of its own";
             return Err(table.wrong("group", what, remedy));
@@ -267,103 +230,58 @@ fn boundaries(tables: Vec<Reader>) -> Result<Vec<Boundary>> {
 }
 
 /// Whether one names the other or a third as its partner, and is not named back.
-fn rivals(a: &Boundary, b: &Boundary) -> bool {
-    let partner = |boundary: &Boundary| match &boundary.condition {
-        Condition::Periodic { partner } => Some(partner.clone()),
-        _ => None,
-    };
-    let (of_a, of_b) = (partner(a), partner(b));
-    let (to_b, to_a) = (of_a.as_ref() == Some(&b.group), of_b.as_ref() == Some(&a.group));
+fn disagree(a: &Boundary, b: &Boundary) -> bool {
+    let (of_a, of_b) = (a.partner().map(|(_, group)| group), b.partner().map(|(_, group)| group));
+    let (to_b, to_a) = (of_a == Some(&b.group), of_b == Some(&a.group));
     to_a != to_b || (of_a.is_some() && of_a == of_b)
 }
 
-fn boundary(table: &mut Reader) -> Result<Boundary> {
+fn boundary(table: &mut Reader, degree: usize) -> Result<Boundary> {
     table.later(&["gap", "friction"]);
+    let [group, kind] = [&tables::BOUNDARY[..1], &tables::BOUNDARY[1..]];
+    let mut named = table.values(group)?;
+    let entry = table.entry(&kind[0], CONDITIONS)?;
+    let condition = table.rest(entry, degree)?;
+    table.complete(group, &mut named, degree)?;
+    Ok(Boundary { group: named.text("group").to_owned(), condition })
+}
+
+fn source(mut table: Reader, degree: usize) -> Result<Source> {
     let group = table.text("group")?;
-    let kind = table.choice("kind", &KINDS, &["unilateral", "contact"])?;
-    let names: Vec<&str> = KINDS.iter().map(|(name, _)| *name).collect();
-    let kind = kind.ok_or_else(|| table.missing("kind", &format!("one of {}", names.join(", "))))?;
-    let value = |table: &mut Reader, unit: &str| {
-        let value = table.expressions("value")?;
-        value.ok_or_else(|| table.missing("value", &format!("two expressions of x, y, t, in {unit}")))
+    let entry = table.entry(&tables::SOURCE[1], SOURCES)?;
+    Ok(Source { group, source: table.rest(entry, degree)? })
+}
+
+fn curl(table: Option<&mut Reader>, degree: usize) -> Result<Chosen<controls::Control>> {
+    let default = find(CONTROLS, controls::DEFAULT).unwrap_or(&CONTROLS[0]);
+    let Some(table) = table else {
+        return Ok(Chosen { entry: default, values: defaults(default.parameters, degree) });
     };
-    let condition = match kind {
-        Kind::Wall => Condition::Wall { speed: table.expression("speed")?.unwrap_or_else(|| Expression::number(0.0)) },
-        Kind::Symmetry => Condition::Symmetry,
-        Kind::Free => Condition::Free,
-        Kind::Clamped => Condition::Clamped,
-        Kind::Velocity => Condition::Velocity(value(table, "m/s")?),
-        Kind::Traction => Condition::Traction(value(table, "Pa")?),
-        Kind::Absorbing => Condition::Absorbing,
-        Kind::Periodic => {
-            let partner = table.text("partner")?;
-            let remedy = "the group at the other side of the body, for instance \"right\"";
-            Condition::Periodic { partner: partner.ok_or_else(|| table.missing("partner", remedy))? }
-        }
-    };
-    table.of_kind(names[kind as usize]);
-    table.finish()?;
-    let group = group.ok_or_else(|| table.missing("group", "the group of edges in the mesh, for instance \"left\""))?;
-    Ok(Boundary { group, condition })
+    let entry = table.maybe_entry(&tables::CURL[0], CONTROLS)?;
+    table.rest(entry.unwrap_or(default), degree)
 }
 
-fn source(mut table: Reader) -> Result<Source> {
-    let group = table.text("group")?;
-    let gravity = table.choice("kind", &[("body-force", false), ("gravity", true)], &[])?;
-    let gravity = gravity.ok_or_else(|| table.missing("kind", "\"body-force\" or \"gravity\""))?;
-    let value = table.expressions("value")?;
+fn watch(table: Option<&mut Reader>) -> Result<Option<Watch>> {
+    let [stop, warn] = WATCHED;
+    let Some(table) = table else { return Ok(Some(Watch { warn, stop })) };
+    let values = table.values(tables::WATCH)?;
     table.finish()?;
-    let value = value.ok_or_else(|| table.missing("value", "two components per unit mass, in m/s^2"))?;
-    if let (true, Some(i)) = (gravity, value.iter().position(|v| v.constant().is_none())) {
-        let what = "gravity depends on x, y or t".to_owned();
-        return Err(table.wrong_entry(
-            "value",
-            i,
-            what,
-            "gravity is constant; kind = \"body-force\" takes expressions",
-        ));
-    }
-    Ok(Source { group, value })
-}
-
-fn curl(table: Option<&mut Reader>, degree: usize) -> Result<Curl> {
-    let alpha = if degree >= 4 { 6.0 } else { 3.0 };
-    let Some(table) = table else { return Ok(Curl::Rotation { alpha }) };
-    let controls = [("rotation", Curl::Rotation { alpha }), ("lcf", Curl::Lcf { alpha }), ("off", Curl::Off)];
-    let mut curl = table.choice("control", &controls, &["auto"])?.unwrap_or(Curl::Rotation { alpha });
-    if let Curl::Rotation { alpha } | Curl::Lcf { alpha } = &mut curl {
-        *alpha = table.number("alpha", POSITIVE)?.unwrap_or(*alpha);
-    }
-    table.of_kind(match curl {
-        Curl::Rotation { .. } => "rotation",
-        Curl::Lcf { .. } => "lcf",
-        Curl::Off => "off",
-    });
-    table.finish()?;
-    Ok(curl)
-}
-
-fn watch(table: Option<&mut Reader>) -> Result<Option<Limits>> {
-    let Some(table) = table else { return Ok(Some(Limits::default())) };
-    let off = table.is_text("energy", "off");
-    let stop = if off { table.text("energy")?.map(|_| f64::INFINITY) } else { table.number("energy", POSITIVE)? };
-    let warn = table.number("warn", POSITIVE)?;
-    table.finish()?;
-    let stop = stop.unwrap_or(Limits::default().stop);
-    let warn = warn.unwrap_or(Limits::default().warn.min(stop));
+    let off = values.has("energy") && values.maybe("energy").is_none();
+    let stop = if off { f64::INFINITY } else { values.maybe("energy").unwrap_or(stop) };
+    let warn = values.maybe("warn").unwrap_or(warn.min(stop));
     if off && table.has("warn") || warn > stop {
         let what =
             format!("the run would warn at {warn}, and {}", if off { "the watch is off" } else { "stop before" });
         return Err(table.wrong("warn", what, "give a share up to that of `energy`, or leave it out"));
     }
-    Ok((!off).then_some(Limits { warn, stop }))
+    Ok((!off).then_some(Watch { warn, stop }))
 }
 
 fn time(table: &mut Reader) -> Result<(f64, f64)> {
-    let start = table.number("start", FINITE)?.unwrap_or(0.0);
-    let end = table.number("end", POSITIVE)?;
+    let mut values = table.values(tables::TIME)?;
     table.finish()?;
-    let end = end.ok_or_else(|| table.missing("end", "the end time, in s"))?;
+    table.complete(tables::TIME, &mut values, 0)?;
+    let (start, end) = (values.number("start"), values.number("end"));
     if end <= start {
         let what = format!("`end` is {end}, and the run starts at {start}");
         return Err(table.wrong("end", what, "give an end after the start"));

@@ -1,31 +1,13 @@
-//! Reads one table of a scene key by key: each getter checks type and range, [`Reader::finish`] refuses
-//! the keys that nobody asked for, and every message has its place.
+//! Reads one table of a scene by the parameters that it may have: each value is checked for its form and range,
+//! [`Reader::finish`] refuses the keys that nobody asked for, and every message has its place.
 
-use std::ops::RangeInclusive;
+use toml_edit::{Item, TableLike, Value as Toml};
 
-use toml_edit::{Item, TableLike, Value};
-
-use super::expression::Expression;
 use super::origin::{Origin, Part};
-use super::suggest;
 use crate::error::{Error, Result};
-
-/// What values a number may take.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Check {
-    /// In words that complete "must be".
-    pub(super) range: &'static str,
-    /// The rule; it never sees NaN or infinity.
-    pub(super) holds: fn(f64) -> bool,
-}
-
-/// Any finite number.
-pub(super) const FINITE: Check = Check { range: "finite", holds: |_| true };
-/// A number above 0.
-pub(super) const POSITIVE: Check = Check { range: "greater than 0", holds: |value| value > 0.0 };
-
-/// A number that may be 0.
-pub(super) const NOT_NEGATIVE: Check = Check { range: "not negative", holds: |x| x >= 0.0 };
+use crate::expression::Expression;
+use crate::names;
+use crate::registry::{Check, Chosen, Entry, Fault, Form, Parameter, Preset, Value, Values, find, quoted};
 
 /// A table that is being read.
 pub(super) struct Reader<'a> {
@@ -64,18 +46,6 @@ impl<'a> Reader<'a> {
         self.table.get(key).and_then(Item::as_str) == Some(text)
     }
 
-    /// A text, or a list of texts.
-    pub(super) fn texts_or_text(&mut self, key: &'static str) -> Result<Option<Vec<String>>> {
-        if self.table.get(key).is_none_or(|item| !item.is_array()) {
-            return Ok(self.text(key)?.map(|text| vec![text]));
-        }
-        let Some(item) = self.item(key) else { return Ok(None) };
-        let texts = item.as_array().into_iter().flatten().map(|value| value.as_str().map(str::to_owned));
-        let texts: Option<Vec<String>> = texts.collect();
-        let wrong = || self.not(key, "a text, or a list of texts that is not empty", item);
-        texts.filter(|texts| !texts.is_empty()).map(Some).ok_or_else(wrong)
-    }
-
     /// An error at the value of a key.
     pub(super) fn wrong(&self, key: &str, what: impl Into<String>, remedy: impl Into<String>) -> Error {
         self.origin.error(&self.below(&[key]), Part::Value, what, remedy)
@@ -95,7 +65,7 @@ impl<'a> Reader<'a> {
     /// The error of a required key that is not there.
     pub(super) fn missing(&self, key: &str, remedy: &str) -> Error {
         let given: Vec<&str> = self.table.iter().map(|(key, _)| key).filter(|key| !self.known.contains(key)).collect();
-        if let Some(misspelt) = suggest::nearest(key, &given) {
+        if let Some(misspelt) = names::nearest(key, &given) {
             let what = format!("unknown key `{misspelt}` in {}", self.title);
             let remedy = format!("did you mean `{key}`? {} needs it: {remedy}", self.title);
             return self.origin.error(&self.below(&[misspelt]), Part::Key, what, remedy);
@@ -131,91 +101,201 @@ impl<'a> Reader<'a> {
         item.as_bool().map(Some).ok_or_else(|| self.not(key, "true or false", item))
     }
 
-    /// A finite number in a range.
-    pub(super) fn number(&mut self, key: &'static str, check: Check) -> Result<Option<f64>> {
-        let Some(item) = self.item(key) else { return Ok(None) };
-        let number = item.as_value().and_then(number_of);
-        number
-            .filter(|n| (check.holds)(*n))
-            .map(Some)
-            .ok_or_else(|| self.not(key, &format!("a number, {}", check.range), item))
+    /// A list of N expressions of x, y, t.
+    pub(super) fn expressions<const N: usize>(&mut self, key: &'static str) -> Result<Option<[Expression; N]>> {
+        let Some(all) = self.list_of_expressions(key, N)? else { return Ok(None) };
+        let count = all.len();
+        all.try_into().map(Some).map_err(|_| self.count(key, N, count))
     }
 
-    /// A whole number in a range.
-    pub(super) fn integer(&mut self, key: &'static str, range: RangeInclusive<usize>) -> Result<Option<usize>> {
+    /// What the table gives for some parameters.
+    pub(super) fn values(&mut self, parameters: &[Parameter]) -> Result<Values> {
+        let mut values = Values::default();
+        for parameter in parameters {
+            if let Some(value) = self.value(parameter)? {
+                values.set(parameter.name, value);
+            }
+        }
+        Ok(values)
+    }
+
+    /// Adds the defaults of parameters that the table does not give; those that it must give are missing.
+    pub(super) fn complete(&self, parameters: &[Parameter], values: &mut Values, degree: usize) -> Result<()> {
+        for parameter in parameters.iter().filter(|parameter| !self.has(parameter.name)) {
+            if let Preset::Required = parameter.default {
+                return Err(self.missing(parameter.name, &format!("{}: {}", parameter.about, parameter.words())));
+            }
+            if let Some(value) = parameter.default.value(degree) {
+                values.set(parameter.name, value);
+            }
+        }
+        Ok(())
+    }
+
+    /// The entry that a key names, if the key is there.
+    pub(super) fn maybe_entry<B>(
+        &mut self,
+        key: &Parameter,
+        entries: &'static [Entry<B>],
+    ) -> Result<Option<&'static Entry<B>>> {
+        let values = self.values(std::slice::from_ref(key))?;
+        Ok(values.maybe_text(key.name).and_then(|name| find(entries, name)))
+    }
+
+    /// The entry that a key names.
+    pub(super) fn entry<B>(&mut self, key: &Parameter, entries: &'static [Entry<B>]) -> Result<&'static Entry<B>> {
+        let entry = self.maybe_entry(key, entries)?;
+        entry.ok_or_else(|| self.missing(key.name, &format!("{}: {}", key.about, key.words())))
+    }
+
+    /// All that is left of a table: the parameters of an entry, which is its kind.
+    pub(super) fn rest<B>(&mut self, entry: &'static Entry<B>, degree: usize) -> Result<Chosen<B>> {
+        self.of_kind(entry.name);
+        self.rest_of(entry, degree)
+    }
+
+    /// All that is left of a table: the parameters of an entry.
+    pub(super) fn rest_of<B>(&mut self, entry: &'static Entry<B>, degree: usize) -> Result<Chosen<B>> {
+        let mut values = self.values(entry.parameters)?;
+        self.finish()?;
+        self.complete(entry.parameters, &mut values, degree)?;
+        self.fits(entry, &values)?;
+        Ok(Chosen { entry, values })
+    }
+
+    /// Whether the values of an entry fit together.
+    pub(super) fn fits<B>(&self, entry: &Entry<B>, values: &Values) -> Result<()> {
+        (entry.check)(values).map_err(|fault| self.fault(&fault))
+    }
+
+    /// A fault of values as an error at their key.
+    pub(super) fn fault(&self, fault: &Fault) -> Error {
+        let path: Vec<&str> = fault.key.split('.').collect();
+        self.origin.error(&self.below(&path), Part::Value, &fault.what, &fault.remedy)
+    }
+
+    /// A key that the table may have.
+    pub(super) fn know(&mut self, key: &'static str) {
+        self.known.push(key);
+    }
+
+    /// What the table gives for a parameter.
+    fn value(&mut self, parameter: &Parameter) -> Result<Option<Value>> {
+        self.value_of(parameter, &parameter.form)
+    }
+
+    fn value_of(&mut self, parameter: &Parameter, form: &Form) -> Result<Option<Value>> {
+        let key = parameter.name;
+        Ok(match form {
+            Form::Number(check) => {
+                let Some(item) = self.item(key) else { return Ok(None) };
+                let number = item.as_value().and_then(number_of).filter(|n| (check.holds)(*n));
+                Some(Value::Number(number.ok_or_else(|| self.not(key, &form.words(parameter.unit), item))?))
+            }
+            Form::Integer(from, to) => {
+                let Some(item) = self.item(key) else { return Ok(None) };
+                let number = item.as_integer().and_then(|n| usize::try_from(n).ok());
+                let number = number.filter(|n| (from..=to).contains(&n));
+                Some(Value::Integer(number.ok_or_else(|| self.not(key, &form.words(""), item))?))
+            }
+            Form::Boolean => self.boolean(key)?.map(Value::Boolean),
+            Form::Numbers(check) => self.numbers(parameter, check)?.map(Value::Numbers),
+            Form::Vector(check) => match self.numbers(parameter, check)? {
+                Some(numbers) if numbers.len() != 2 => return Err(self.count(key, 2, numbers.len())),
+                numbers => numbers.map(Value::Numbers),
+            },
+            Form::Text => self.text(key)?.map(Value::Text),
+            Form::Texts => self.texts(key)?.map(Value::Texts),
+            Form::Expression => {
+                let Some(item) = self.item(key) else { return Ok(None) };
+                let value = item.as_value().ok_or_else(|| self.not(key, EXPRESSION, item))?;
+                Some(Value::Expression(self.compile(&[key], value)?))
+            }
+            Form::Expressions(count) => self.list_of_expressions(key, *count)?.map(Value::Expressions),
+            Form::Name(names, later) => self.name(key, &names(), later)?.map(Value::Text),
+            Form::Names(names) => self.names(key, &names())?.map(Value::Texts),
+            Form::Table(keys) => match self.table(key)? {
+                Some(mut table) => Some(Value::Table(table.all(keys)?)),
+                None => None,
+            },
+            Form::Tables(keys) => {
+                let mut tables = self.tables(key)?;
+                let all = tables.iter_mut().map(|table| table.all(keys)).collect::<Result<Vec<_>>>()?;
+                (!all.is_empty()).then_some(Value::Tables(all))
+            }
+            Form::Or(word, _) if self.is_text(key, word) => self.text(key)?.map(Value::Text),
+            Form::Or(_, other) => return self.value_of(parameter, other),
+        })
+    }
+
+    /// All of a table that has these keys and no others.
+    fn all(&mut self, parameters: &[Parameter]) -> Result<Values> {
+        let mut values = self.values(parameters)?;
+        self.finish()?;
+        self.complete(parameters, &mut values, 0)?;
+        Ok(values)
+    }
+
+    /// A text, or a list of texts.
+    fn texts(&mut self, key: &'static str) -> Result<Option<Vec<String>>> {
+        if self.table.get(key).is_none_or(|item| !item.is_array()) {
+            return Ok(self.text(key)?.map(|text| vec![text]));
+        }
         let Some(item) = self.item(key) else { return Ok(None) };
-        let number = item.as_integer().and_then(|n| usize::try_from(n).ok());
-        let want = match *range.end() {
-            usize::MAX => format!("a whole number, at least {}", range.start()),
-            end => format!("a whole number from {} to {end}", range.start()),
-        };
-        number.filter(|n| range.contains(n)).map(Some).ok_or_else(|| self.not(key, &want, item))
+        let texts = item.as_array().into_iter().flatten().map(|value| value.as_str().map(str::to_owned));
+        let texts: Option<Vec<String>> = texts.collect();
+        let wrong = || self.not(key, "a text, or a list of texts that is not empty", item);
+        texts.filter(|texts| !texts.is_empty()).map(Some).ok_or_else(wrong)
     }
 
     /// A list of finite numbers in a range.
-    pub(super) fn numbers(&mut self, key: &'static str, check: Check) -> Result<Option<Vec<f64>>> {
+    fn numbers(&mut self, parameter: &Parameter, check: &Check) -> Result<Option<Vec<f64>>> {
+        let key = parameter.name;
         let Some(item) = self.item(key) else { return Ok(None) };
         let want = "a list of numbers, as in [1.0, 2.0]";
         let list = item.as_array().filter(|list| !list.is_empty()).ok_or_else(|| self.not(key, want, item))?;
         let mut numbers = Vec::with_capacity(list.len());
         for (i, value) in list.iter().enumerate() {
             let number = number_of(value).filter(|n| (check.holds)(*n));
-            numbers.push(number.ok_or_else(|| self.not_entry(key, i, &format!("a number, {}", check.range), value))?);
+            numbers.push(number.ok_or_else(|| self.not_entry(key, i, &check.words(parameter.unit), value))?);
         }
         Ok(Some(numbers))
     }
 
-    /// A list of N numbers.
-    pub(super) fn array<const N: usize>(&mut self, key: &'static str, check: Check) -> Result<Option<[f64; N]>> {
-        let Some(numbers) = self.numbers(key, check)? else { return Ok(None) };
-        let count = numbers.len();
-        numbers.try_into().map(Some).map_err(|_| self.count(key, N, count))
-    }
-
-    /// An expression of x, y, t: a text or a number.
-    pub(super) fn expression(&mut self, key: &'static str) -> Result<Option<Expression>> {
-        let Some(item) = self.item(key) else { return Ok(None) };
-        let value = item.as_value().ok_or_else(|| self.not(key, EXPRESSION, item))?;
-        self.compile(&[key], value).map(Some)
-    }
-
-    /// A list of N expressions of x, y, t.
-    pub(super) fn expressions<const N: usize>(&mut self, key: &'static str) -> Result<Option<[Expression; N]>> {
-        let Some(item) = self.item(key) else { return Ok(None) };
-        let list = item.as_array().ok_or_else(|| self.not(key, &format!("a list of {N} expressions"), item))?;
-        if list.len() != N {
-            return Err(self.count(key, N, list.len()));
-        }
-        let mut compiled = Vec::with_capacity(N);
-        for (i, value) in list.iter().enumerate() {
-            compiled.push(self.compile(&[key, &i.to_string()], value)?);
-        }
-        compiled.try_into().map(Some).map_err(|_| self.count(key, N, list.len()))
-    }
-
     /// One of some names; the names of `later` are known but not built yet.
-    pub(super) fn choice<T: Copy>(
-        &mut self,
-        key: &'static str,
-        names: &[(&str, T)],
-        later: &[&str],
-    ) -> Result<Option<T>> {
+    fn name(&mut self, key: &'static str, names: &[&'static str], later: &[&str]) -> Result<Option<String>> {
         let Some(item) = self.item(key) else { return Ok(None) };
-        let Some(text) = item.as_str() else { return Err(self.not(key, &format!("one of {}", quoted(names)), item)) };
+        let want = || format!("one of {}", quoted(names));
+        let text = item.as_str().ok_or_else(|| self.not(key, &want(), item))?;
         self.pick(&[key], text, names, later).map(Some)
     }
 
-    /// A list of names.
-    pub(super) fn choices<T: Copy>(&mut self, key: &'static str, names: &[(&str, T)]) -> Result<Option<Vec<T>>> {
+    /// A list of names, each once.
+    fn names(&mut self, key: &'static str, names: &[&'static str]) -> Result<Option<Vec<String>>> {
         let Some(item) = self.item(key) else { return Ok(None) };
-        let want = format!("a list of names out of {}", quoted(names));
-        let list = item.as_array().filter(|list| !list.is_empty()).ok_or_else(|| self.not(key, &want, item))?;
-        let mut found = Vec::with_capacity(list.len());
+        let want = || format!("a list of names out of {}", quoted(names));
+        let list = item.as_array().filter(|list| !list.is_empty()).ok_or_else(|| self.not(key, &want(), item))?;
+        let mut found: Vec<String> = Vec::with_capacity(list.len());
         for (i, value) in list.iter().enumerate() {
             let text = value.as_str().ok_or_else(|| self.not_entry(key, i, "a name", value))?;
-            found.push(self.pick(&[key, &i.to_string()], text, names, &[])?);
+            let name = self.pick(&[key, &i.to_string()], text, names, &[])?;
+            if found.contains(&name) {
+                return Err(self.wrong_entry(key, i, format!("\"{name}\" is there twice"), "remove one"));
+            }
+            found.push(name);
         }
         Ok(Some(found))
+    }
+
+    /// A list of expressions of x, y, t.
+    fn list_of_expressions(&mut self, key: &'static str, count: usize) -> Result<Option<Vec<Expression>>> {
+        let Some(item) = self.item(key) else { return Ok(None) };
+        let list = item.as_array().ok_or_else(|| self.not(key, &format!("a list of {count} expressions"), item))?;
+        if list.len() != count {
+            return Err(self.count(key, count, list.len()));
+        }
+        let compile = |(i, value): (usize, &Toml)| self.compile(&[key, &i.to_string()], value);
+        list.iter().enumerate().map(compile).collect::<Result<_>>().map(Some)
     }
 
     /// The table under a key.
@@ -254,9 +334,9 @@ impl<'a> Reader<'a> {
         self.path.iter().cloned().chain(keys.iter().map(|key| (*key).to_owned())).collect()
     }
 
-    fn pick<T: Copy>(&self, keys: &[&str], text: &str, names: &[(&str, T)], later: &[&str]) -> Result<T> {
-        if let Some((_, value)) = names.iter().find(|(name, _)| *name == text) {
-            return Ok(*value);
+    fn pick(&self, keys: &[&str], text: &str, names: &[&'static str], later: &[&str]) -> Result<String> {
+        if names.contains(&text) {
+            return Ok(text.to_owned());
         }
         let path = self.below(keys);
         let list = quoted(names);
@@ -264,12 +344,11 @@ impl<'a> Reader<'a> {
             let what = format!("`{}` = \"{text}\" is not built yet", keys[0]);
             return Err(self.origin.error(&path, Part::Value, what, format!("built are {list}")));
         }
-        let known: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
-        let remedy = format!("{}there are {list}", suggest::did_you_mean(text, &known));
+        let remedy = format!("{}there are {list}", names::did_you_mean(text, names));
         Err(self.origin.error(&path, Part::Value, format!("unknown `{}` \"{}\"", keys[0], short(text)), remedy))
     }
 
-    fn compile(&self, keys: &[&str], value: &Value) -> Result<Expression> {
+    fn compile(&self, keys: &[&str], value: &Toml) -> Result<Expression> {
         let path = self.below(keys);
         if let Some(number) = number_of(value) {
             return Ok(Expression::number(number));
@@ -291,7 +370,7 @@ impl<'a> Reader<'a> {
             return self.origin.error(&path, Part::Key, what, format!("{} knows {known}", self.title));
         }
         let what = format!("unknown key `{}` in {}", short(key), self.title);
-        let remedy = format!("{}{} knows {known}", suggest::did_you_mean(key, &self.known), self.title);
+        let remedy = format!("{}{} knows {known}", names::did_you_mean(key, &self.known), self.title);
         self.origin.error(&path, Part::Key, what, remedy)
     }
 
@@ -308,7 +387,7 @@ impl<'a> Reader<'a> {
         self.wrong(key, format!("`{key}` is {}", describe(item.as_value())), format!("it must be {want}"))
     }
 
-    fn not_entry(&self, key: &str, index: usize, want: &str, value: &Value) -> Error {
+    fn not_entry(&self, key: &str, index: usize, want: &str, value: &Toml) -> Error {
         let what = format!("entry {index} of `{key}` is {}", describe(Some(value)));
         self.wrong_entry(key, index, what, format!("it must be {want}"))
     }
@@ -317,25 +396,21 @@ impl<'a> Reader<'a> {
 const EXPRESSION: &str = "an expression of x, y, t in quotes, or a number";
 
 /// The finite number that a value is.
-fn number_of(value: &Value) -> Option<f64> {
+fn number_of(value: &Toml) -> Option<f64> {
     let number = value.as_float().or_else(|| value.as_integer().map(|n| n as f64));
     number.filter(|n| n.is_finite())
 }
 
-fn quoted<T>(names: &[(&str, T)]) -> String {
-    names.iter().map(|(name, _)| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
-}
-
 /// A value in words; `None` is a table.
-fn describe(value: Option<&Value>) -> String {
+fn describe(value: Option<&Toml>) -> String {
     match value {
-        Some(Value::String(text)) => format!("the text \"{}\"", short(text.value())),
-        Some(Value::Integer(n)) => n.value().to_string(),
-        Some(Value::Float(x)) => x.value().to_string(),
-        Some(Value::Boolean(b)) => b.value().to_string(),
-        Some(Value::Datetime(_)) => "a date".to_owned(),
-        Some(Value::Array(list)) => format!("a list of {}", list.len()),
-        Some(Value::InlineTable(_)) | None => "a table".to_owned(),
+        Some(Toml::String(text)) => format!("the text \"{}\"", short(text.value())),
+        Some(Toml::Integer(n)) => n.value().to_string(),
+        Some(Toml::Float(x)) => x.value().to_string(),
+        Some(Toml::Boolean(b)) => b.value().to_string(),
+        Some(Toml::Datetime(_)) => "a date".to_owned(),
+        Some(Toml::Array(list)) => format!("a list of {}", list.len()),
+        Some(Toml::InlineTable(_)) | None => "a table".to_owned(),
     }
 }
 

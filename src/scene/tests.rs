@@ -1,4 +1,5 @@
 use super::*;
+use crate::registry::{self, Entry, FLUXES, LAYOUTS, find};
 
 const MINIMAL: &str = r#"
 [mesh]
@@ -32,6 +33,21 @@ fn parse(text: &str, sets: &[&str]) -> Result<Scene> {
     Scene::parse(text, Path::new("folder/case.toml"), &sets)
 }
 
+/// An entry with its defaults for degree 2.
+fn plain<B>(entries: &'static [Entry<B>], name: &str) -> Chosen<B> {
+    let entry = find(entries, name).unwrap();
+    Chosen { entry, values: registry::defaults(entry.parameters, 2) }
+}
+
+fn cloud(layout: &str, per_direction: usize) -> Cloud {
+    Cloud { layout: plain(LAYOUTS, layout), per_direction }
+}
+
+/// The control of the curl and its rate.
+fn control(scene: &Scene) -> (&'static str, Option<f64>) {
+    (scene.curl.name(), scene.curl.values.maybe("alpha"))
+}
+
 fn message(text: &str, sets: &[&str]) -> String {
     parse(text, sets).unwrap_err().to_string()
 }
@@ -41,25 +57,26 @@ fn defaults() {
     let scene = parse(MINIMAL, &[]).unwrap();
     assert_eq!((scene.title.as_str(), scene.name().as_str()), ("case", "case"));
     assert_eq!(scene.mesh, Mesh::Rectangle { size: [3.0, 1.0], cells: [30, 10] });
-    assert_eq!(scene.cloud, Cloud { layout: Layout::InCells(seed::Layout::Paper), per_direction: 3 });
+    assert_eq!(scene.cloud, cloud("paper", 3));
     assert_eq!(scene.materials[0].cloud, scene.cloud);
-    assert_eq!(scene.materials[0].parameters["young"], 2e11);
+    assert_eq!(scene.materials[0].law.values.number("young"), 2e11);
     assert_eq!(scene.initial.deformation.each_ref().map(|f| f.constant().unwrap()), [1.0, 0.0, 0.0, 1.0]);
-    assert_eq!(scene.boundaries[0].condition, Condition::Wall { speed: Expression::number(0.0) });
-    assert_eq!((scene.curl, scene.scheme.flux), (Curl::Rotation { alpha: 3.0 }, Flux::Dual));
+    let wall = &scene.boundaries[0].condition;
+    assert_eq!((wall.name(), wall.values.expression("speed")), ("wall", Some(&Expression::number(0.0))));
+    assert_eq!((control(&scene), scene.scheme.flux.name()), (("rotation", Some(3.0)), "dual"));
     let scheme = Scheme {
         method: Method::AderDgmpm,
         degree: 2,
         time_degree: 2,
-        flux: Flux::Dual,
+        flux: plain(FLUXES, "dual"),
         step: Step::Safety(0.9),
         sweeps: Sweeps::Ladder,
     };
     assert_eq!(scene.scheme, scheme);
     assert!(scene.outputs.is_empty() && scene.sources.is_empty());
     let high = parse(MINIMAL, &["scheme.degree=4"]).unwrap();
-    assert_eq!(high.cloud, Cloud { layout: Layout::InCells(seed::Layout::Midpoints), per_direction: 5 });
-    assert_eq!((high.curl, high.scheme.time_degree), (Curl::Rotation { alpha: 6.0 }, 4));
+    assert_eq!(high.cloud, cloud("midpoints", 5));
+    assert_eq!((control(&high), high.scheme.time_degree), (("rotation", Some(6.0)), 4));
 }
 
 #[test]
@@ -85,11 +102,12 @@ kind = "ledger"
     let scene = parse(&text, &[]).unwrap();
     let [fields, line, ledger] = &scene.outputs[..] else { panic!("three outputs") };
     assert_eq!((fields.name.as_str(), &fields.when, fields.exact_times), ("fields", &When::Every(1e-4), true));
-    assert_eq!(fields.fields.len(), 7);
-    assert_eq!(line.what, What::Line { from: [0.0, 0.0], to: [3.0, 0.0], samples: 300 });
+    assert_eq!(scene.fields_of(fields).len(), 7);
+    let values = &line.what.values;
+    assert_eq!((values.vector("from"), values.vector("to"), values.integer("samples")), ([0.0, 0.0], [3.0, 0.0], 300));
     assert_eq!(line.when, When::At(vec![5e-4, 1e-3]));
-    assert_eq!(line.fields, [Field::CauchyStress, Field::Velocity]);
-    assert_eq!((&ledger.when, ledger.fields.len()), (&When::EverySteps(1), 0));
+    assert_eq!(values.texts("fields"), ["cauchy_stress", "velocity"]);
+    assert_eq!((&ledger.when, scene.fields_of(ledger).len()), (&When::EverySteps(1), 0));
 }
 
 #[test]
@@ -104,10 +122,10 @@ value = [0, -9.81]
     let sets = ["boundary.0.speed=10*t", "boundary.1.kind=traction", "boundary.1.value=[\"-1e8*step(1e-4-t)\", 0]"];
     let scene = parse(&format!("{MINIMAL}{more}"), &sets).unwrap();
     assert!((scene.initial.velocity[1].eval([0.5, 0.0], 0.0) - 300.0).abs() < 1e-9);
-    assert_eq!(scene.sources[0].value[1].constant(), Some(-9.81));
-    let Condition::Wall { speed } = &scene.boundaries[0].condition else { panic!("a wall") };
+    assert_eq!(scene.sources[0].source.values.expressions("value")[1].constant(), Some(-9.81));
+    let speed = scene.boundaries[0].condition.values.expression("speed").unwrap();
     assert_eq!(speed.eval([0.0; 2], 2.0), 20.0);
-    let Condition::Traction([push, _]) = &scene.boundaries[1].condition else { panic!("a traction") };
+    let push = scene.boundaries[1].condition.values.expression("value").unwrap();
     assert!(push.depends_on_time());
 }
 
@@ -138,17 +156,17 @@ fn sets_replace_rivals_and_grow_lists() {
     let scene = parse(MINIMAL, &sets).unwrap();
     assert_eq!(scene.outputs[1].when, When::EverySteps(5));
     let scene = parse(MINIMAL, &["curl.control=off", "cloud={layout=\"gauss\"}"]).unwrap();
-    assert_eq!((scene.curl, scene.cloud.layout), (Curl::Off, Layout::InCells(seed::Layout::Gauss)));
+    assert_eq!((control(&scene), scene.cloud.layout), (("off", None), plain(LAYOUTS, "gauss")));
     let scene = parse(MINIMAL, &["boundary.1={group=\"right\", kind=\"traction\", value=[0, 1]}"]).unwrap();
-    assert!(matches!(scene.boundaries[1].condition, Condition::Traction(_)));
+    assert_eq!(scene.boundaries[1].condition.name(), "traction");
     assert_eq!(parse(&scene.to_toml(), &[]).unwrap().boundaries, scene.boundaries);
     let sets = ["output.0={kind=\"fields\", every=1e-4}", "boundary.1={group=\"right\", kind=\"clamped\"}"];
     let scene = parse(MINIMAL, &sets).unwrap();
-    assert_eq!((scene.outputs.len(), &scene.boundaries[1].condition), (1, &Condition::Clamped));
+    assert_eq!((scene.outputs.len(), scene.boundaries[1].condition.name()), (1, "clamped"));
     assert_eq!(parse(&scene.to_toml(), &[]).unwrap().boundaries, scene.boundaries);
     let with_table = format!("{MINIMAL}[cloud]\nlayout = \"paper\" # where\n[curl]\ncontrol = \"lcf\"\n");
     let scene = parse(&with_table, &["cloud={layout=\"gauss\"}", "curl.alpha=5"]).unwrap();
-    assert_eq!((scene.curl, scene.cloud.layout), (Curl::Lcf { alpha: 5.0 }, Layout::InCells(seed::Layout::Gauss)));
+    assert_eq!((control(&scene), scene.cloud.layout), (("lcf", Some(5.0)), plain(LAYOUTS, "gauss")));
 }
 
 #[test]
@@ -225,11 +243,11 @@ fn errors_of_later_checks_have_places_too() {
 fn layouts_per_material() {
     let text = MINIMAL.replace("density = 7800", "density = 7800\nlayout = \"jitter\"\nseed = 7\nper_direction = 4");
     let scene = parse(&text, &[]).unwrap();
-    assert_eq!(scene.cloud, Cloud { layout: Layout::InCells(seed::Layout::Paper), per_direction: 3 });
-    assert_eq!(
-        scene.materials[0].cloud,
-        Cloud { layout: Layout::InCells(seed::Layout::Jitter { seed: 7, amount: 0.2 }), per_direction: 4 }
-    );
+    assert_eq!(scene.cloud, cloud("paper", 3));
+    let own = &scene.materials[0].cloud;
+    let values = &own.layout.values;
+    assert_eq!((own.layout.name(), own.per_direction), ("jitter", 4));
+    assert_eq!((values.integer("seed"), values.number("amount")), (7, 0.2));
     let file = parse(MINIMAL, &["cloud={layout=\"file\", path=\"points.vtu\"}"]).unwrap();
     assert_eq!(file.cloud_path(), Some(PathBuf::from("folder/points.vtu")));
     assert!(message(&text, &["cloud={layout=\"file\", path=\"p\"}"]).contains("the points come from the file"));
@@ -281,7 +299,8 @@ fn partners_that_do_not_agree_are_refused() {
 fn exact_solutions_have_defaults_and_fit_law_and_end() {
     let scene = parse(MINIMAL, &["exact.kind=simple-wave", "exact.width=0.2", "time.end=1e-4"]).unwrap();
     let exact = scene.exact.as_ref().unwrap();
-    assert_eq!((exact.parameters["amplitude"], exact.parameters["width"], exact.initial), (0.1, 0.2, true));
+    let of = |name: &str| exact.solution.values.number(name);
+    assert_eq!((of("amplitude"), of("width"), exact.initial), (0.1, 0.2, true));
     assert!(scene.build_exact().unwrap().body_force([0.0; 2], 0.0).is_none());
     let given = parse(MINIMAL, &["exact.kind=wall-impact", "initial.velocity=[-200, 0]"]).unwrap();
     assert!(!given.exact.unwrap().initial);

@@ -7,8 +7,7 @@ use super::norms;
 use super::operator::Rate;
 use super::{Problem, Setup};
 use crate::error::{Error, Result};
-use crate::scene::{Method, Scene};
-use serde_json::Value;
+use crate::scene::Scene;
 
 /// A step is stable if its spectral radius is at most 1 and this, by degree: twice what ADER of degree 4, 5, 6 grows by at
 /// any step ([`crate::step::cfl::growth`]); RK of these degrees with the projection of F grows by up to 5e-6 far below its limit.
@@ -48,31 +47,14 @@ pub struct Names {
 
 impl Names {
     fn of(scene: &Scene) -> Self {
-        let points = scene.scheme.method == Method::AderDgmpm;
         Self {
             method: scene.scheme.method.name().to_owned(),
             degree: scene.scheme.degree,
-            layout: points.then(|| tag(&scene.materials[0].cloud.layout)),
+            layout: scene.scheme.method.has_points().then(|| scene.materials[0].cloud.layout.name().to_owned()),
             flux: scene.scheme.flux.name().to_owned(),
-            curl: tag(&scene.curl),
+            curl: scene.curl.name().to_owned(),
         }
     }
-}
-
-/// The name of a choice as it is written in scenes.
-fn tag(choice: &impl serde::Serialize) -> String {
-    fn of(value: &Value) -> String {
-        match value {
-            Value::Object(map) => match map.iter().next() {
-                Some((group, inner)) if ["in-cells", "body"].contains(&&group[..]) => of(inner),
-                Some((name, _)) => name.clone(),
-                None => String::new(),
-            },
-            Value::String(name) => name.clone(),
-            other => other.to_string(),
-        }
-    }
-    serde_json::to_value(choice).map_or(String::new(), |value| of(&value))
 }
 
 /// What was found.

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::mesh::{self, Mesh};
 use crate::problem;
+use crate::registry::Value;
 use crate::scene::{Scene, Step};
 use crate::state::{State, UNKNOWNS};
 use crate::step::{Method, Scheme, Survey, Work, cfl};
@@ -127,9 +128,9 @@ impl Setup {
             return Ok(scene);
         }
         let material = &scene.materials[0];
-        let mut second = format!("material.1={{group=\"{}\",law=\"{}\"", GROUPS[1], material.law);
-        let _ = write!(second, ",density={:?}", material.density);
-        for (name, value) in &material.parameters {
+        let mut second = format!("material.1={{group=\"{}\",law=\"{}\"", GROUPS[1], material.law.name());
+        for (name, value) in material.law.values.iter() {
+            let Value::Number(value) = value else { continue };
             let value = if name == "young" { self.contrast * value } else { *value };
             let _ = write!(second, ",{name}={value:?}");
         }

@@ -6,8 +6,9 @@ use super::reference::Reference;
 use crate::error::{Error, Result};
 use crate::exact::Errors;
 use crate::problem::{Problem, Setup};
+use crate::registry::Method;
 use crate::run::{Report, Run, Stop, dofs};
-use crate::scene::{self, Method, Scene, Step};
+use crate::scene::{self, Scene, Step};
 use crate::state::State;
 use std::sync::atomic::AtomicBool;
 

@@ -3,7 +3,7 @@
 use super::case::{Record, Series};
 use crate::chart::{COLOURS, FONT, Picture, SIZE, decades, save, square};
 use crate::error::Result;
-use crate::scene::Method;
+use crate::registry::Method;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

@@ -1,7 +1,7 @@
 //! Text to instructions, by recursive descent; constants are folded on the way.
 
 use super::{FUNCTIONS, Fault, Op, STACK, function};
-use crate::scene::suggest;
+use crate::names;
 
 /// Nesting of brackets, signs and powers beyond which a text is refused.
 const DEPTH: usize = 100;
@@ -246,7 +246,7 @@ impl<'a> Parser<'a> {
     fn unknown(&self, name: &str, start: usize) -> Fault {
         let functions: Vec<&str> = FUNCTIONS.iter().map(|f| f.0).collect();
         let names: Vec<&str> = ["x", "y", "t", "pi", "e"].into_iter().chain(functions.iter().copied()).collect();
-        let hint = suggest::did_you_mean(name, &names);
+        let hint = names::did_you_mean(name, &names);
         let remedy = format!(
             "{hint}expressions know x, y (m, at t = 0), t (s), pi, e and the functions {}",
             functions.join(", ")

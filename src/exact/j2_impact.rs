@@ -11,7 +11,7 @@ use crate::step::Law;
 /// last v1 = 0. Where the plastic shock would overtake the elastic one there is one shock, below yield the elastic one.
 /// Valid until a wave from another boundary arrives.
 #[derive(Debug, Clone)]
-pub struct PlasticImpact {
+pub struct J2Impact {
     speed: f64,
     /// F11 behind each of the shocks, and its speed in X; the elastic one first.
     shocks: [(f64, f64); 2],
@@ -23,7 +23,7 @@ pub struct PlasticImpact {
 /// The smallest stretch that is looked at.
 const SMALLEST: f64 = 1e-3;
 
-impl PlasticImpact {
+impl J2Impact {
     /// At speed V > 0, m/s; none where the law has no plastic strain, or the impact would press the body to nothing.
     pub fn new(law: &Law, speed: f64) -> Option<Self> {
         let plastic = law.place_of("plastic_strain")?.start;
@@ -64,7 +64,7 @@ impl PlasticImpact {
     }
 }
 
-impl Exact for PlasticImpact {
+impl Exact for J2Impact {
     fn deformation(&self, x: [f64; 2], t: f64) -> [f64; 4] {
         let passed = self.passed(x, t);
         [if passed > 0 { self.shocks[passed - 1].0 } else { 1.0 }, 0.0, 0.0, 1.0]
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn the_plateau_is_that_of_an_independent_program() {
         let law = steel(4e8);
-        let exact = PlasticImpact::new(&law, 200.0).unwrap();
+        let exact = J2Impact::new(&law, 200.0).unwrap();
         let [_, (f11, plastic)] = exact.shocks();
         let behind = law.response([f11, 0.0, 0.0, 1.0], &law.virgin());
         // By a program of its own in closed form, s11 = 4/3 mu e; the design's prototype measured 7.4570e9, .025753, 4689.0.
@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn momentum_and_energy_are_balanced_across_both_shocks() {
         let law = steel(4e8);
-        let exact = PlasticImpact::new(&law, 200.0).unwrap();
+        let exact = J2Impact::new(&law, 200.0).unwrap();
         let t = 1e-4;
         let xs = exact.shocks().map(|(_, s)| s * t);
         assert!(xs[1] < xs[0]);
@@ -137,16 +137,16 @@ mod tests {
 
     #[test]
     fn below_yield_there_is_one_elastic_shock_and_a_huge_impact_has_none() {
-        let exact = PlasticImpact::new(&steel(1e12), 200.0).unwrap();
+        let exact = J2Impact::new(&steel(1e12), 200.0).unwrap();
         let [first, second] = exact.shocks();
         assert!(first == second && exact.internal([0.0; 2], 1.0).unwrap()[4] == 0.0);
         assert!((first.1 * (1.0 - first.0) - 200.0).abs() < 1e-9);
-        assert!(PlasticImpact::new(&steel(4e8), 1e9).is_none());
+        assert!(J2Impact::new(&steel(4e8), 1e9).is_none());
     }
 
     #[test]
     fn a_law_without_plastic_strain_has_no_such_solution() {
         let law = Law::new(crate::material::NeoHookean::new(2e11, 0.3, 7800.0));
-        assert!(PlasticImpact::new(&law, 200.0).is_none());
+        assert!(J2Impact::new(&law, 200.0).is_none());
     }
 }

@@ -1,0 +1,63 @@
+//! The fluxes on inner faces, `[scheme] flux = ..`.
+
+use super::{ANY, Entry};
+use crate::riemann::{Acoustic, AcousticCurl, Dual, Rusanov};
+use crate::step;
+
+/// What there is to know of a flux.
+pub struct Flux {
+    /// Makes it.
+    pub make: fn() -> step::Flux,
+    /// What may help a run that lost stability with the default flux, and why another flux may be the reason. Its argument
+    /// says whether a law of the run has a memory.
+    pub when_lost: fn(bool) -> Option<&'static str>,
+}
+
+/// The flux of a scene that names none.
+pub const DEFAULT: &str = "dual";
+
+const WITH_MEMORY: &str = "makes energy where a law with memory flows";
+
+const OTHER: &str = "scheme.flux = \"rusanov\" damps all jumps of F, and holds some corners that are crushed";
+
+/// Every flux.
+pub static FLUXES: &[Entry<Flux>] = &[
+    Entry {
+        name: "dual",
+        about: "Lax-Friedrichs in velocity and traction, with the jump of the rotation of F, which does no work",
+        parameters: &[],
+        check: ANY,
+        build: Flux { make: || step::Flux::new(Dual), when_lost: |memory| (!memory).then_some(OTHER) },
+    },
+    Entry {
+        name: "rusanov",
+        about: "local Lax-Friedrichs: damps all jumps",
+        parameters: &[],
+        check: ANY,
+        build: Flux {
+            make: || step::Flux::new(Rusanov),
+            when_lost: |memory| match memory {
+                true => Some(WITH_MEMORY),
+                false => Some("makes energy in large motions of a nearly incompressible body"),
+            },
+        },
+    },
+    Entry {
+        name: "acoustic",
+        about: "linearised Godunov; unstable in compression where the curl of F is not controlled",
+        parameters: &[],
+        check: ANY,
+        build: Flux { make: || step::Flux::new(Acoustic), when_lost },
+    },
+    Entry {
+        name: "acoustic-curl",
+        about: "acoustic with a penalty on the tangential jump of F",
+        parameters: &[],
+        check: ANY,
+        build: Flux { make: || step::Flux::new(AcousticCurl), when_lost },
+    },
+];
+
+fn when_lost(memory: bool) -> Option<&'static str> {
+    Some(if memory { WITH_MEMORY } else { "holds less in compression" })
+}

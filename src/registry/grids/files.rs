@@ -1,0 +1,52 @@
+//! Mesh files, and where the files of a rule go in the folder of a run.
+
+use super::{Present, Rule, Values};
+use crate::error::{Error, Result};
+use crate::io::{mesh_file, read_mesh};
+use crate::mesh::Mesh;
+use std::path::Path;
+
+/// What becomes of the files that a rule names, so that the folder of a run can be moved and run again.
+#[derive(Clone, Copy)]
+pub struct Stored {
+    /// The name of the k-th file of a rule, by the numbers of both.
+    pub name: fn(usize, usize) -> String,
+    /// Writes it there.
+    pub store: fn(&Path, &Path) -> Result<()>,
+}
+
+/// Meshes, in the format of the program.
+pub const MESHES: Stored = Stored {
+    name: |rule, k| format!("regrid_{rule}_{k}.h5"),
+    store: |from, to| mesh_file::write_mesh(to, &read_mesh(from)?),
+};
+
+/// A geometry, copied.
+pub const GEOMETRY: Stored = Stored { name: |rule, _| format!("regrid_{rule}.geo"), store: copy };
+
+/// Copies a file, unless it is there already.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn copy(from: &Path, to: &Path) -> Result<()> {
+    if from.canonicalize().ok().is_some_and(|from| to.canonicalize().is_ok_and(|to| to == from)) {
+        return Ok(());
+    }
+    std::fs::copy(from, to).map(drop).map_err(|why| Error::output(to, why))
+}
+
+pub(super) fn make(of: &Values, rule: &dyn Rule, count: usize, _: &Present) -> Result<Mesh> {
+    let files = of.texts("mesh");
+    read_mesh(&rule.resolve(&files[count % files.len()]))
+}
+
+pub(super) fn check(of: &Values, rule: &dyn Rule, _: &Mesh) -> Result<()> {
+    for file in of.texts("mesh") {
+        let mesh = read_mesh(&rule.resolve(file))?;
+        let here = |why: Error| {
+            rule.wrong("mesh", format!("{file}: {why}"), "give meshes of the same body with the same groups")
+        };
+        rule.accepts(&mesh).map_err(here)?;
+    }
+    Ok(())
+}

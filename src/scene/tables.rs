@@ -1,0 +1,254 @@
+//! The keys of the tables of a scene. What a `kind`, `law`, `layout` or `control` adds to them stands in the
+//! [`crate::registry`], with its entry.
+
+use super::Histories;
+use crate::registry::{
+    AT_LEAST_1, Check, FINITE, FLUXES, Form, METHODS, NOT_NEGATIVE, POSITIVE, Parameter, Policy, Preset, SHARE, Sweeps,
+    controls, fluxes, names,
+};
+use crate::registry::{CONDITIONS, CONTROLS, LAWS, LAYOUTS, OUTPUTS, SOLUTIONS, SOURCES, grids};
+
+const fn key(name: &'static str, about: &'static str, unit: &'static str, form: Form, default: Preset) -> Parameter {
+    Parameter { name, about, unit, form, default }
+}
+
+const fn needed(name: &'static str, about: &'static str, unit: &'static str, form: Form) -> Parameter {
+    Parameter::required(name, about, unit, form)
+}
+
+fn of<T>(names: &[(&'static str, T)]) -> Vec<&'static str> {
+    names.iter().map(|(name, _)| *name).collect()
+}
+
+pub(super) const MESH: &[Parameter] = &[
+    key("file", "a Gmsh file, or the .h5 file of `dgmpm mesh`", "", Form::Text, Preset::Absent("`rectangle` then")),
+    key(
+        "rectangle",
+        "a mesh without a file, with the groups left, right, bottom, top and body",
+        "",
+        Form::Table(grids::RECTANGLE),
+        Preset::Absent("`file` then"),
+    ),
+];
+
+pub(super) const HISTORIES: Parameter = key(
+    "histories",
+    "where laws with memory keep P and their internal variables; at the points their flow makes energy (for studies)",
+    "",
+    Form::Name(|| of(Histories::NAMES), &[]),
+    Preset::Absent("\"nodes\""),
+);
+
+pub(super) const PER_DIRECTION: Parameter = key(
+    "per_direction",
+    "points per cell and direction; of a layout through the whole body in the mean",
+    "",
+    Form::Integer(1, 30),
+    Preset::Absent("degree + 1; of poisson-disk and rotated degree + 2; of random and cluster degree + 3"),
+);
+
+pub(super) const LAYOUT: Parameter = key(
+    "layout",
+    "where the points stand",
+    "",
+    Form::Name(|| names(LAYOUTS), &[]),
+    Preset::Absent("\"paper\"; from degree 3 on \"midpoints\"; for laws with memory \"gauss\""),
+);
+
+pub(super) const LIMITS: [Parameter; 2] = [
+    key(
+        "face_lebesgue",
+        "largest face Lebesgue constant of the points of a cell; where it is given it holds for lattices too",
+        "",
+        Form::Number(AT_LEAST_1),
+        Preset::Absent("10, 10, 30, 60, 150, 500, 1650 for degree 0 to 6"),
+    ),
+    key(
+        "condition",
+        "largest condition number of the fit; where it is given it holds for lattices too",
+        "",
+        Form::Number(AT_LEAST_1),
+        Preset::Absent("1e5"),
+    ),
+];
+pub(super) const CLOUD: &[Parameter] = &[LAYOUT, PER_DIRECTION, HISTORIES, LIMITS[0], LIMITS[1]];
+
+/// What a material may have of its own: no file.
+fn own_layouts() -> Vec<&'static str> {
+    LAYOUTS.iter().filter(|entry| !entry.build.is_file()).map(|entry| entry.name).collect()
+}
+
+pub(super) const LAW: Parameter = needed("law", "the law", "", Form::Name(|| names(LAWS), &[]));
+pub(super) const OWN_LAYOUT: Parameter = key(
+    "layout",
+    "as in [cloud], with its keys, for the points of this group",
+    "",
+    Form::Name(own_layouts, &[]),
+    Preset::Absent("that of [cloud]"),
+);
+pub(super) const MATERIAL: &[Parameter] = &[
+    key("group", "the group of cells", "", Form::Text, Preset::Absent("all cells, of a single [[material]]")),
+    LAW,
+    key(
+        "histories",
+        "as in [cloud], for the points of this group",
+        "",
+        Form::Name(|| of(Histories::NAMES), &[]),
+        Preset::Absent("that of [cloud]"),
+    ),
+    OWN_LAYOUT,
+    PER_DIRECTION,
+];
+
+pub(super) const VELOCITY: Parameter =
+    key("velocity", "v1, v2; expressions of x, y", "m/s", Form::Expressions(2), Preset::Constant(&[0.0, 0.0]));
+pub(super) const DEFORMATION: Parameter = key(
+    "deformation",
+    "F11, F12, F21, F22; expressions of x, y",
+    "",
+    Form::Expressions(4),
+    Preset::Constant(&[1.0, 0.0, 0.0, 1.0]),
+);
+pub(super) const SNAPSHOT: Parameter = key(
+    "snapshot",
+    "a snapshot that the run starts from, such as \"snapshots/000123.h5\"; without any other key",
+    "",
+    Form::Text,
+    Preset::Absent("none"),
+);
+pub(super) const FROM: Parameter = key(
+    "from",
+    "the state comes from the fields of the cloud file; without any other key",
+    "",
+    Form::Name(|| vec!["cloud"], &[]),
+    Preset::Absent("none"),
+);
+pub(super) const INITIAL: &[Parameter] = &[VELOCITY, DEFORMATION, SNAPSHOT, FROM];
+
+pub(super) const EXACT: &[Parameter] = &[needed("kind", "the solution", "", Form::Name(|| names(SOLUTIONS), &[]))];
+
+pub(super) const BOUNDARY: &[Parameter] = &[
+    needed("group", "the group of edges in the mesh, such as \"left\"", "", Form::Text),
+    needed("kind", "the condition", "", Form::Name(|| names(CONDITIONS), &["unilateral", "contact"])),
+];
+
+pub(super) const SOURCE: &[Parameter] = &[
+    key("group", "the group of cells that it acts on", "", Form::Text, Preset::Absent("all cells")),
+    needed("kind", "the source", "", Form::Name(|| names(SOURCES), &[])),
+];
+
+/// The share of the measured limit that a step is, where the scene says nothing of it.
+pub(super) const SAFETY: f64 = 0.9;
+
+const DEGREE: Form = Form::Integer(0, 6);
+
+pub(super) const SCHEME: &[Parameter] = &[
+    needed("method", "the method", "", Form::Name(|| names(METHODS), &[])),
+    needed("degree", "degree N of the polynomials in space", "", DEGREE),
+    key("time_degree", "degree N_T in time", "", DEGREE, Preset::Absent("`degree`")),
+    key("flux", "the flux on inner faces", "", Form::Name(|| names(FLUXES), &[]), Preset::Name(fluxes::DEFAULT)),
+    key(
+        "cfl",
+        "size of the time step: dt = cfl h / ((2N+1) c); a step beyond the stability limit is an error",
+        "",
+        Form::Number(POSITIVE),
+        Preset::Absent("`safety` then"),
+    ),
+    key(
+        "safety",
+        "size of the time step as a share of the measured stability limit, in place of `cfl`",
+        "",
+        Form::Number(POSITIVE),
+        Preset::Absent("0.9"),
+    ),
+    key(
+        "sweeps",
+        "sweeps of the predictor: the ladder needs time_degree = degree; the paper's evaluate the law more often",
+        "",
+        Form::Name(|| of(Sweeps::NAMES), &[]),
+        Preset::Absent("\"ladder\"; with other degrees \"paper\""),
+    ),
+];
+
+pub(super) const CURL: &[Parameter] =
+    &[key("control", "the control", "", Form::Name(|| names(CONTROLS), &["auto"]), Preset::Name(controls::DEFAULT))];
+
+pub(super) const TIME: &[Parameter] = &[
+    key("start", "time of the initial state", "s", Form::Number(FINITE), Preset::Number(0.0)),
+    needed("end", "the end time", "s", Form::Number(POSITIVE)),
+];
+
+/// Shares of energy made out of nothing at which a run stops and warns.
+pub(super) const WATCHED: [f64; 2] = [0.1, 1e-3];
+
+pub(super) const WATCH: &[Parameter] = &[
+    key(
+        "energy",
+        "share of energy made out of nothing at which the run stops",
+        "",
+        Form::Or("off", &Form::Number(POSITIVE)),
+        Preset::Absent("0.1"),
+    ),
+    key("warn", "share at which the program warns", "", Form::Number(POSITIVE), Preset::Absent("1e-3")),
+];
+
+/// 0 is the initial state.
+const MOMENT: Check = NOT_NEGATIVE;
+
+/// When something is done.
+pub(super) const WHEN: &[Parameter] = &[
+    key("at", "at these times", "s", Form::Numbers(MOMENT), Preset::Absent("none")),
+    key("every", "at the start and then every so many seconds", "s", Form::Number(POSITIVE), Preset::Absent("none")),
+    key(
+        "every_steps",
+        "at the start and then every so many steps",
+        "",
+        Form::Integer(1, usize::MAX),
+        Preset::Absent("none"),
+    ),
+];
+
+pub(super) const EXACT_TIMES: Parameter = key(
+    "exact_times",
+    "whether steps are shortened to end at the times of `at` or `every`",
+    "",
+    Form::Boolean,
+    Preset::Boolean(false),
+);
+
+pub(super) const OUTPUT: &[Parameter] = &[needed("kind", "what is recorded", "", Form::Name(|| names(OUTPUTS), &[]))];
+
+pub(super) const CRITERIA: &[Parameter] = &[
+    key(
+        "certificate",
+        "the largest face Lebesgue constant of a cell is above this",
+        "",
+        Form::Number(POSITIVE),
+        Preset::Absent("none"),
+    ),
+    key(
+        "distortion",
+        "the smallest scaled Jacobian in the current configuration is below this",
+        "",
+        Form::Number(SHARE),
+        Preset::Absent("none"),
+    ),
+    key(
+        "front",
+        "velocity varies within a cell by more than this share of its range over the body",
+        "",
+        Form::Number(SHARE),
+        Preset::Absent("none"),
+    ),
+];
+
+pub(super) const REGRID: &[Parameter] = &[
+    key(
+        "when",
+        "at those times only if one of these conditions holds; without times it is tested every 10 steps",
+        "",
+        Form::Table(CRITERIA),
+        Preset::Absent("always"),
+    ),
+    key("points", "what happens to the points", "", Form::Name(|| of(Policy::NAMES), &[]), Preset::Name("keep")),
+];
