@@ -7,8 +7,8 @@ use super::progress::Progress;
 use super::report::report;
 use super::{summary, threads};
 use crate::error::{Error, Place, Result};
-use crate::problem::{Ended, Files, Outcome, Problem, Setup, Solve, Store, write_input};
-use crate::run::{Folder, Report};
+use crate::problem::{Files, Problem, Setup, Store, write_input};
+use crate::run::Folder;
 use std::path::{Path, PathBuf};
 
 /// Arguments.
@@ -62,20 +62,14 @@ pub fn all(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &Run
 /// Steps to the end, and says what came of it.
 fn solve(mut problem: Problem, folder: &Folder) -> Result<()> {
     interrupt::listen();
-    let mut report = Report::default();
-    let ended = problem.scene.observers(&problem.body.mesh, folder).map_err(Into::into).and_then(|mut observers| {
-        observers.push(Box::new(Progress::new(problem.settings.end)));
-        problem.solve(Solve { folder: Some(folder), observers, interrupt: &INTERRUPT }, &mut report)
+    let progress = Box::new(Progress::new(problem.settings.end));
+    let (_, result) = problem.record(folder, vec![progress], &INTERRUPT, |outcome, is_done| {
+        summary::print(outcome);
+        if is_done && outcome.report.watch.warned() {
+            let made = &outcome.report.watch.made;
+            warn(format!("{made}: do not trust these results; `energy_made` in summary.json"));
+        }
     });
-    let Ended { status, loss, result } = Ended::of(ended, &problem, &report, folder);
-    report.finish(&problem.scheme, &problem.state);
-    let outcome = Outcome::new(&problem, &report);
-    summary::print(&outcome);
-    if let (true, Ok(())) = (report.watch.warned(), &result) {
-        let made = &report.watch.made;
-        warn(format!("{made}: do not trust these results; `energy_made` in summary.json"));
-    }
-    let written = outcome.write(folder, status, loss);
     say(format!("results in {}", folder.root.display()));
-    result.and(written)
+    result
 }

@@ -28,6 +28,8 @@ const DISSIPATED: &str = "material_dissipation";
 
 /// The last column, if the scene changes its grid: the energy that these changes have lost since the start of the run.
 const REGRIDS: &str = "regrid_dissipation";
+/// The last column of a run with corrections.
+const CORRECTIONS: &str = "correction_dissipation";
 
 /// The columns of the balance, after those before. All but the last are cumulated since the start of the run.
 const BALANCE: [&str; 7] = [
@@ -51,6 +53,8 @@ pub struct Contents {
     pub balance: bool,
     /// With the balance: the energy that changes of grid have lost.
     pub regrids: bool,
+    /// With the balance: the energy that corrections of the state have taken.
+    pub corrections: bool,
 }
 
 /// Writes a row each time it observes. Energies in J, momenta in kg m/s and kg m^2/s, per metre of thickness.
@@ -66,12 +70,13 @@ impl Ledger {
     /// # Errors
     /// The file cannot be created.
     pub fn create(path: &Path, schedule: Schedule, contents: Contents) -> Result<Self, Error> {
-        let Contents { drift, dissipated, balance, regrids } = contents;
+        let Contents { drift, dissipated, balance, regrids, corrections } = contents;
         let mut columns = COLUMNS.to_vec();
         columns.extend(drift.then_some(DRIFT));
         columns.extend(dissipated.then_some(DISSIPATED));
         columns.extend(BALANCE.iter().filter(|_| balance));
         columns.extend((balance && regrids).then_some(REGRIDS));
+        columns.extend((balance && corrections).then_some(CORRECTIONS));
         Ok(Self { schedule, contents, table: Table::create(path, &columns)? })
     }
 }
@@ -118,6 +123,7 @@ impl Observer for Ledger {
         if let Some(balance) = view.balance.filter(|_| self.contents.balance) {
             row.extend(columns(balance, &totals));
             row.extend(self.contents.regrids.then_some(balance.regrid_dissipation));
+            row.extend(self.contents.corrections.then_some(balance.correction_dissipation));
         }
         self.table.push(&row)?;
         // Each row is written to the disk at once, so that a killed run leaves its history.

@@ -32,6 +32,7 @@ mod outcome;
 mod outputs;
 mod points;
 mod rebuild;
+mod record;
 mod solve;
 mod start;
 mod store;
@@ -58,8 +59,9 @@ use crate::operators::Operators;
 use crate::run::{Folder, Settings};
 use crate::scene::Scene;
 use crate::state::State;
-use crate::step::{Loss, Scheme};
+use crate::step::{Correction, Loss, Scheme};
 use std::path::Path;
+use std::sync::Arc;
 
 /// A problem that is ready to run.
 pub struct Problem {
@@ -84,6 +86,7 @@ pub struct Setup<'a> {
     scene: &'a Scene,
     mesh: Option<Mesh>,
     points: Option<Given>,
+    corrections: Vec<Arc<dyn Correction>>,
     kernel: Kernel,
     store: Option<Store<'a>>,
 }
@@ -91,7 +94,8 @@ pub struct Setup<'a> {
 impl<'a> Setup<'a> {
     /// Everything from the scene, on the widest instruction set of this processor.
     pub fn of(scene: &'a Scene) -> Self {
-        Self { scene, mesh: None, points: None, kernel: Kernel::widest(), store: None }
+        let (corrections, kernel) = (vec![], Kernel::widest());
+        Self { scene, mesh: None, points: None, corrections, kernel, store: None }
     }
 
     /// On this mesh, whose groups are those of the scene.
@@ -104,6 +108,13 @@ impl<'a> Setup<'a> {
     #[must_use]
     pub fn points(self, points: Given) -> Self {
         Self { points: Some(points), ..self }
+    }
+
+    /// With a correction of the new state after each step, after those that are there.
+    #[must_use]
+    pub fn correction(mut self, correction: Arc<dyn Correction>) -> Self {
+        self.corrections.push(correction);
+        self
     }
 
     /// On this instruction set.
@@ -158,12 +169,13 @@ impl<'a> Setup<'a> {
     /// # Errors
     /// A cell whose points cannot carry the degree; stored matrices that cannot be written.
     pub fn scheme(self, body: &Body) -> Result<(Scheme, String)> {
-        let Self { scene, kernel, store, .. } = self;
+        let Self { scene, corrections, kernel, store, .. } = self;
         let (operators, origin) = match store {
             Some(store) => store.operators(scene, body)?,
             None => (body.operators(scene)?, String::new()),
         };
-        Ok((scene.build_scheme(&body.mesh, operators, kernel)?, origin))
+        let scheme = scene.build_scheme(&body.mesh, operators, kernel)?.with_corrections(corrections);
+        Ok((scheme, origin))
     }
 
     /// The problem on a body of this scene, from another start than that of the scene.

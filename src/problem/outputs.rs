@@ -1,5 +1,6 @@
 //! What a scene records: its observers, the fields of its export, and when each is due.
 
+use super::Problem;
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::observe::{Contents, Field, Observer, Schedule};
@@ -42,38 +43,45 @@ impl Scene {
         Ok(())
     }
 
-    /// The observers that the scene asks for, writing into a run folder; and a ledger in any case.
-    ///
-    /// # Errors
-    /// A line that leaves the mesh ([`Scene::check_lines`] has its place); files that cannot be made.
-    pub fn observers(&self, mesh: &Mesh, folder: &Folder) -> Result<Vec<Box<dyn Observer>>> {
-        let material = self.material_of_cells(mesh);
-        let dissipated = self.laws().iter().any(|law| law.has_memory());
-        let drift = self.components() > UNKNOWNS;
-        let contents = Contents { drift, dissipated, regrids: !self.regrids.is_empty(), balance: false };
-        let laws = self.laws();
-        let make = |name: &str, what: &Chosen<_>, schedule: Schedule| {
-            let (material, fields) = (&material[..], fields_of(what, &laws));
-            (what.build().make)(&what.values, Recording { name, fields, schedule, mesh, material, folder, contents })
-        };
-        let mut out: Vec<Box<dyn Observer>> = Vec::new();
-        for output in &self.outputs {
-            out.push(make(&output.name, &output.what, schedule_of(&output.when, output.exact_times))?);
-        }
-        for entry in OUTPUTS.iter().filter(|entry| self.outputs.iter().all(|output| output.what.name() != entry.name)) {
-            let Some(always) = entry.build.always else { continue };
-            let mut values = defaults(entry.parameters, self.scheme.degree);
-            let schedule = schedule_of(&When::EverySteps(always(&mut values)), false);
-            out.push(make(entry.name, &Chosen { entry, values }, schedule)?);
-        }
-        Ok(out)
-    }
-
     /// The fields that an export shows: those of the first `fields` output, or all that the state has.
     pub fn export_fields(&self) -> Vec<Field> {
         let (laws, snapshots) = (self.laws(), self.outputs.iter().find(|output| output.what.build().snapshots));
         let all = || Field::of_laws(&laws).into_iter().filter(|field| *field != Field::Displacement).collect();
         snapshots.map_or_else(all, |output| fields_of(&output.what, &laws))
+    }
+}
+
+impl Problem {
+    /// The observers that the scene asks for, writing into a run folder; and a ledger in any case.
+    ///
+    /// # Errors
+    /// A line that leaves the mesh ([`Scene::check_lines`] has its place); files that cannot be made.
+    pub fn observers(&self, folder: &Folder) -> Result<Vec<Box<dyn Observer>>> {
+        let Self { scene, body, scheme, state, .. } = self;
+        let contents = Contents {
+            drift: state.has_displacement(),
+            dissipated: !scheme.histories.is_empty(),
+            regrids: !scene.regrids.is_empty(),
+            corrections: !scheme.corrections.is_empty(),
+            balance: false,
+        };
+        let (mesh, material) = (&body.mesh, &body.material[..]);
+        let make = |name: &str, what: &Chosen<_>, schedule: Schedule| {
+            let fields = fields_of(what, &scheme.laws);
+            (what.build().make)(&what.values, Recording { name, fields, schedule, mesh, material, folder, contents })
+        };
+        let mut out: Vec<Box<dyn Observer>> = Vec::new();
+        for output in &scene.outputs {
+            out.push(make(&output.name, &output.what, schedule_of(&output.when, output.exact_times))?);
+        }
+        for entry in OUTPUTS.iter().filter(|entry| scene.outputs.iter().all(|output| output.what.name() != entry.name))
+        {
+            let Some(always) = entry.build.always else { continue };
+            let mut values = defaults(entry.parameters, scene.scheme.degree);
+            let schedule = schedule_of(&When::EverySteps(always(&mut values)), false);
+            out.push(make(entry.name, &Chosen { entry, values }, schedule)?);
+        }
+        Ok(out)
     }
 }
 

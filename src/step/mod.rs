@@ -66,7 +66,7 @@ pub use survey::{Speeds, Survey};
 pub use sweeps::Sweeps;
 
 use crate::boundary::TimeNode;
-use crate::lane::F8;
+use crate::lane::{F8, ticks};
 use crate::state::State;
 use begin::Begin;
 use finish::Finish;
@@ -204,7 +204,10 @@ impl Scheme {
         work.next.time = time;
         work.next.step = state.step + 1;
         if !self.corrections.is_empty() {
+            let start = ticks();
             self.correct(state, dt, work);
+            let scratch = work.scratch[0].get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());
+            scratch.phases.add(Phase::Corrections, ticks().wrapping_sub(start));
         }
     }
 

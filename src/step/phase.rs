@@ -21,14 +21,16 @@ pub enum Phase {
     Flux,
     /// Update of the unknowns (13).
     Corrector,
-    /// The curl-free projection.
+    /// The control of the curl of F.
     CurlFree,
     /// Law and health at the points: wave speeds, min J.
     Survey,
+    /// Corrections of the new state, and the survey of what they changed.
+    Corrections,
 }
 
 /// Number of phases.
-pub const PHASES: usize = 9;
+pub const PHASES: usize = 10;
 
 /// Names as printed, in the order of [`Phase`].
 pub const NAMES: [&str; PHASES] = [
@@ -39,8 +41,9 @@ pub const NAMES: [&str; PHASES] = [
     "traces",
     "flux (3), (14)",
     "corrector (13)",
-    "curl-free projection",
+    "control of the curl",
     "survey (law at points)",
+    "corrections",
 ];
 
 /// Seconds per phase.
@@ -104,6 +107,11 @@ impl Ticks {
             clock.start = now;
         }
         counted::mark(phase as usize);
+    }
+
+    /// Books ticks that passed outside of blocks.
+    pub fn add(&mut self, phase: Phase, ticks: u64) {
+        self.sums[phase as usize] += ticks;
     }
 
     /// The seconds so far at `rate` ticks each; from here on they count anew.

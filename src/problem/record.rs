@@ -1,0 +1,42 @@
+//! A run whose results are kept in a folder, as `dgmpm run` keeps them.
+
+use super::{Ended, Files, Outcome, Problem, Solve, write_input};
+use crate::error::Result;
+use crate::observe::Observer;
+use crate::run::{Folder, Report};
+use std::sync::atomic::AtomicBool;
+
+impl Problem {
+    /// Steps to the end, and writes input, outputs and summary into a folder; results of an earlier run in it are removed.
+    ///
+    /// # Errors
+    /// Files that cannot be written; a run that lost stability, whose last good state is then among the snapshots.
+    pub fn run_in(&mut self, folder: &Folder) -> Result<Report> {
+        folder.clear_results()?;
+        write_input(self, &Files::default(), folder, self.body.certificates.clone())?;
+        let (report, result) = self.record(folder, vec![], &AtomicBool::new(false), |_, _| {});
+        result.map(|()| report)
+    }
+
+    /// Steps to the end with the outputs of the scene and `more` observers, and writes the summary; the report, and how it ended.
+    /// `look` sees the outcome before it is written, and whether the run came to its end.
+    pub fn record(
+        &mut self,
+        folder: &Folder,
+        more: Vec<Box<dyn Observer>>,
+        interrupt: &AtomicBool,
+        look: impl FnOnce(&Outcome, bool),
+    ) -> (Report, Result<()>) {
+        let mut report = Report::default();
+        let ended = self.observers(folder).map_err(Into::into).and_then(|mut observers| {
+            observers.extend(more);
+            self.solve(Solve { folder: Some(folder), observers, interrupt }, &mut report)
+        });
+        let Ended { status, loss, result } = Ended::of(ended, self, &report, folder);
+        report.finish(&self.scheme, &self.state);
+        let outcome = Outcome::new(self, &report);
+        look(&outcome, result.is_ok());
+        let written = outcome.write(folder, status, loss);
+        (report, result.and(written))
+    }
+}
