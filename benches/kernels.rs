@@ -2,15 +2,15 @@
 //! location of a million points.
 //! (Seconds of the phases inside of a step are what `dgmpm bench` prints.)
 
-use dgmpm::bench::{Domain, Setup};
-use dgmpm::cloud::{Locator, Pattern, from_points};
-use dgmpm::lane::{F8, Kernel, Lanes, Work, load_array, store_array};
-use dgmpm::material::{LinearElastic, Material, NeoHookean, Past, virgin};
-use dgmpm::mesh::map;
-use dgmpm::problem::Problem;
+use dgmpm::parts::bench::{Domain, Setup};
+use dgmpm::parts::cloud::{Locator, Pattern, from_points};
+use dgmpm::parts::lane::{F8, Kernel, Lanes, Work, load_array, store_array};
+use dgmpm::parts::material::{LinearElastic, Material, NeoHookean, Past, virgin};
+use dgmpm::parts::mesh::map;
+use dgmpm::parts::problem::Problem;
+use dgmpm::parts::riemann::{Acoustic, AcousticCurl, Medium, Riemann, Rusanov, Trace};
+use dgmpm::parts::step::Motion;
 use dgmpm::registry::Method;
-use dgmpm::riemann::{Acoustic, AcousticCurl, Medium, Riemann, Rusanov, Trace};
-use dgmpm::step::Motion;
 use divan::{Bencher, black_box, counter::ItemsCount};
 
 /// Points of eight cells that one call treats: the fields of a block of degree 3 fit the first cache.
@@ -145,7 +145,7 @@ fn step_ader_dgmpm_any_cloud(bencher: Bencher, degree: usize) {
 /// The plate with a hole, every cell in 8 x 8, and 1e6 points in it: along rows as a lattice, or in random order.
 fn locate(bencher: Bencher, rows: bool) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/plate_hole.msh");
-    let mesh = dgmpm::io::gmsh::read(&path).expect("the mesh of an example is valid").refined(8);
+    let mesh = dgmpm::parts::io::gmsh::read(&path).expect("the mesh of an example is valid").refined(8);
     let member = vec![true; mesh.cells.len()];
     let area: f64 = (0..mesh.cells.len()).map(|cell| map::area(&mesh.corners(cell))).sum();
     let cloud = Pattern::Rotated { angle: 30.0, spacing: (area / 1e6).sqrt() }.seed(&mesh, &member);
@@ -160,7 +160,7 @@ fn locate(bencher: Bencher, rows: bool) {
         points.sort_by_key(|x| x[0].to_bits().wrapping_add(x[1].to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15));
     }
     println!("{} points in {} cells", points.len(), mesh.cells.len());
-    let outside = |why: dgmpm::cloud::Outside| panic!("{why}");
+    let outside = |why: dgmpm::parts::cloud::Outside| panic!("{why}");
     bencher
         .counter(ItemsCount::new(points.len()))
         .bench_local(|| from_points(&mesh, &Locator::new(&mesh), black_box(&points)).unwrap_or_else(outside));

@@ -4,16 +4,16 @@
 //! `cargo run --release --example limits -- F11 F22` (default 1 1; .9 .9 is the compressed state of the design). The
 //! third argument `ladder` measures the two schedules of the predictor's sweeps side by side, N_T = N, and nothing else.
 
-use dgmpm::basis::TimeBasis;
-use dgmpm::boundary::{Boundary, Wall};
-use dgmpm::material::NeoHookean;
-use dgmpm::mesh::{links, rectangle};
-use dgmpm::operators::{Needs, Operators, Sampling};
-use dgmpm::riemann::Rusanov;
-use dgmpm::state::State;
-use dgmpm::step::Flux;
-use dgmpm::step::Law;
-use dgmpm::step::{Control, Method, Motion, Relax, Scheme, Sweeps, Tableau};
+use dgmpm::parts::basis::TimeBasis;
+use dgmpm::parts::boundary::{Boundary, Wall};
+use dgmpm::parts::material::NeoHookean;
+use dgmpm::parts::mesh::{links, rectangle};
+use dgmpm::parts::operators::{Needs, Operators, Sampling};
+use dgmpm::parts::riemann::Rusanov;
+use dgmpm::parts::state::State;
+use dgmpm::parts::step::Flux;
+use dgmpm::parts::step::Law;
+use dgmpm::parts::step::{Control, Method, Motion, Relax, Scheme, Sweeps, Tableau};
 use std::sync::Arc;
 
 const CELLS: usize = 4;

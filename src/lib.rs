@@ -42,44 +42,171 @@
 //! normal in X; `f` is F, `j` det F, `p` in laws is P, `t` a traction P N or the time, `c` wave speeds (c_p, c_s), `h` the
 //! length h_e of a cell, `xi` parent coordinates. A *block* is eight cells, one a *lane* ([`lane`]).
 //!
+//! ## A run in ten lines
+//!
+//! ```no_run
+//! use dgmpm::{Export, Folder, Problem};
+//!
+//! fn main() -> dgmpm::Result<()> {
+//!     let mut problem = Problem::load("meshes/square_impact.toml".as_ref(), &["time.end=3e-4".to_owned()])?;
+//!     let folder = Folder::new("runs/first".as_ref());
+//!     let report = problem.run_in(&folder)?;
+//!     println!("{} steps, energy {:.4} of the start", report.steps, report.energy_ratio());
+//!     Export::new(&folder)?.vtu()
+//! }
+//! ```
+//!
+//! `examples/own_law.rs` adds a law, `examples/own_scene.rs` builds a run without a scene file. [`registry`] has all that scenes
+//! can name; what a crate adds to its tables, scenes name as if it were built in.
+//!
 //! ## The house
 //!
 //! Data flows mesh, cloud, operators, state, step, output. The order of the modules below is the order of dependency: a
-//! module uses only those above it (`tests/layers.rs` holds this). [`step::Scheme`] is read-only, [`state::State`] is all
-//! that changes, [`step::Work`] carries nothing from step to step. A new law, flux, boundary condition or source is one
-//! file and a line in its registry.
+//! module uses only those above it (`tests/layers.rs` holds this). [`Scheme`] is read-only, [`State`] is all that changes.
+//! A new law, flux, boundary condition, source, solution, output, grid or layout is one file and one entry of [`registry`]
+//! (`docs/extend.md`). The modules are private: what a user needs stands on the page of `pub use` below.
 
 #![deny(missing_docs)]
+// Links to private modules are for those who work on the crate: `cargo doc --document-private-items`.
+#![allow(rustdoc::private_intra_doc_links)]
 
 #[macro_use]
 mod names;
-pub mod error;
-pub mod lane;
+mod error;
+mod lane;
 pub mod tensor;
-pub mod quadrature;
-pub mod basis;
-pub mod mesh;
-pub mod cloud;
-pub mod operators;
-pub mod state;
-pub mod material;
-pub mod riemann;
-pub mod boundary;
-pub mod source;
-pub mod step;
-pub mod regrid;
-pub mod io;
-pub mod chart;
-pub mod observe;
-pub mod run;
-pub mod exact;
-pub mod expression;
+mod quadrature;
+mod basis;
+mod mesh;
+mod cloud;
+mod operators;
+mod state;
+mod material;
+mod riemann;
+mod boundary;
+mod source;
+mod step;
+mod regrid;
+mod io;
+mod chart;
+mod observe;
+mod run;
+mod exact;
+mod expression;
 pub mod registry;
-pub mod scene;
-pub mod problem;
-pub mod stability;
-pub mod study;
-pub mod bench;
-pub mod cli;
+mod scene;
+mod problem;
+mod stability;
+mod study;
+mod bench;
+mod cli;
 
-pub use error::{Error, Place};
+pub use error::{Error, Place, Result};
+
+// A run: scene, problem, results.
+pub use problem::{Body, Export, Files, Given, Outcome, Problem, Setup, Solve, Store};
+pub use run::{Folder, Report, Settings};
+pub use scene::Scene;
+
+// A run by hand: mesh, points, matrices, scheme, state, steps.
+pub use basis::TimeBasis;
+pub use cloud::{Cloud, Locator, seed};
+pub use mesh::{Mesh, links, periodic_links, rectangle};
+pub use operators::{Needs, Operators, Sampling};
+pub use state::State;
+pub use step::{Control, Loss, Method, Motion, Relax, Scheme, Survey, Sweeps, Tableau, Totals, cfl};
+
+// What a crate may add: laws, fluxes, conditions, sources, corrections, observers.
+pub use boundary::{Absorbing, Boundary, Data, FacePoint, Free, Moment, TimeNode, Traction, Velocity, Wall};
+pub use lane::{F8, Kernel, LANES, Lane, Lanes};
+pub use material::{J2, LinearElastic, Material, NeoHookean, Numbers, Past, PointLaw, Rank, Response, Variable};
+pub use observe::{Field, NewGrid, Observer, Point, Schedule, Solution, View};
+pub use riemann::{Acoustic, AcousticCurl, Dual, Impedance, Looks, Medium, Riemann, Rusanov, Trace, star};
+pub use source::{BodyForce, Source};
+pub use step::{Balance, Corrected, Correction, Flux, Law, Made};
+
+// Exact solutions and errors.
+pub use exact::{Errors, Exact, Norms, errors};
+
+/// The command line, `dgmpm ..`. A program that adds to [`registry`] first has it with laws, conditions and sources of its own.
+pub use cli::main;
+
+/// All modules, for the tests and benches of this crate: no part of its surface, and without promises.
+#[doc(hidden)]
+pub mod parts {
+    pub mod error {
+        pub use crate::error::*;
+    }
+    pub mod lane {
+        pub use crate::lane::*;
+    }
+    pub mod quadrature {
+        pub use crate::quadrature::*;
+    }
+    pub mod basis {
+        pub use crate::basis::*;
+    }
+    pub mod mesh {
+        pub use crate::mesh::*;
+    }
+    pub mod cloud {
+        pub use crate::cloud::*;
+    }
+    pub mod operators {
+        pub use crate::operators::*;
+    }
+    pub mod state {
+        pub use crate::state::*;
+    }
+    pub mod material {
+        pub use crate::material::*;
+    }
+    pub mod riemann {
+        pub use crate::riemann::*;
+    }
+    pub mod boundary {
+        pub use crate::boundary::*;
+    }
+    pub mod source {
+        pub use crate::source::*;
+    }
+    pub mod step {
+        pub use crate::step::*;
+    }
+    pub mod regrid {
+        pub use crate::regrid::*;
+    }
+    pub mod io {
+        pub use crate::io::*;
+    }
+    pub mod chart {
+        pub use crate::chart::*;
+    }
+    pub mod observe {
+        pub use crate::observe::*;
+    }
+    pub mod run {
+        pub use crate::run::*;
+    }
+    pub mod exact {
+        pub use crate::exact::*;
+    }
+    pub mod expression {
+        pub use crate::expression::*;
+    }
+    pub mod scene {
+        pub use crate::scene::*;
+    }
+    pub mod problem {
+        pub use crate::problem::*;
+    }
+    pub mod stability {
+        pub use crate::stability::*;
+    }
+    pub mod study {
+        pub use crate::study::*;
+    }
+    pub mod bench {
+        pub use crate::bench::*;
+    }
+}

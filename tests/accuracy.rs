@@ -2,10 +2,10 @@
 
 mod runs;
 
-use dgmpm::io::snapshot::{self, Snapshot};
-use dgmpm::mesh::{Mesh, map, rectangle};
-use dgmpm::quadrature::gauss_legendre;
-use dgmpm::scene::Scene;
+use dgmpm::parts::io::snapshot::{self, Snapshot};
+use dgmpm::parts::mesh::{Mesh, map, rectangle};
+use dgmpm::parts::quadrature::gauss_legendre;
+use dgmpm::parts::scene::Scene;
 use runs::{Outcome, run};
 use std::path::Path;
 

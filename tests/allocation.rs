@@ -1,9 +1,9 @@
 //! A step allocates nothing: a counting allocator stands in this program, and a scheme that has done its first steps takes
 //! more with boundaries of every kind, data that depends on time and a source.
 
-use dgmpm::problem::Problem;
-use dgmpm::scene::Scene;
-use dgmpm::step::{Motion, Scheme};
+use dgmpm::parts::problem::Problem;
+use dgmpm::parts::scene::Scene;
+use dgmpm::parts::step::{Motion, Scheme};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::path::Path;

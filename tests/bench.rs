@@ -103,7 +103,7 @@ fn run_names_its_kernel_too() {
         let sets = ["--set", "time.end=1e-3", "--set", "mesh.rectangle.cells=[4, 4]", "--force"];
         dgmpm(&[&["run", scene, "--out", &out, "--kernel", kernel], &sets[..]].concat())
     };
-    for (name, kernel) in dgmpm::lane::Kernel::NAMES {
+    for (name, kernel) in dgmpm::parts::lane::Kernel::NAMES {
         match run(name) {
             Ok(_) => assert!(kernel.is_available(), "{name}"),
             Err((code, message)) => assert!(code == 2 && !kernel.is_available() && message.contains(name), "{message}"),

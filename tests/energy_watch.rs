@@ -79,7 +79,7 @@ fn the_key_widens_the_watch_or_switches_it_off() {
     assert!(wide.summary["energy_made"]["share"].as_f64().unwrap() > 1.0);
     let off = run(path, &["watch.energy=off"]);
     assert!(off.summary["energy_made"].is_null());
-    let load = |set: &str| dgmpm::scene::Scene::load(&strip, &[set.to_owned()]).map(|scene| scene.watch);
+    let load = |set: &str| dgmpm::parts::scene::Scene::load(&strip, &[set.to_owned()]).map(|scene| scene.watch);
     let limits = load("watch.warn=1e-4").unwrap().unwrap();
     assert_eq!((limits.warn, limits.stop), (1e-4, 0.1));
     assert_eq!(load("watch.energy=1e-5").unwrap().unwrap().warn, 1e-5, "no warning after the stop");

@@ -2,7 +2,7 @@
 
 mod runs;
 
-use dgmpm::scene::Scene;
+use dgmpm::parts::scene::Scene;
 use runs::run;
 use std::path::Path;
 

@@ -6,16 +6,16 @@ use std::fs;
 use std::path::Path;
 
 use dgmpm::Error;
-use dgmpm::cloud::Cloud;
-use dgmpm::io::csv::Table;
-use dgmpm::io::grid::{Field, HighOrderGrid, Kind, lagrange_quad_lattice, lagrange_quad_nodes};
-use dgmpm::io::hdf5::Values;
-use dgmpm::io::seal::{self, Seal};
-use dgmpm::io::snapshot::{self, Snapshot};
-use dgmpm::io::store::{ArrayRef, Format, Store, write_arrays};
-use dgmpm::io::{cloud_file, hash, mesh_file, pvd, vtu, xdmf};
-use dgmpm::mesh::Mesh;
-use dgmpm::operators::{Certificate, Class};
+use dgmpm::parts::cloud::Cloud;
+use dgmpm::parts::io::csv::Table;
+use dgmpm::parts::io::grid::{Field, HighOrderGrid, Kind, lagrange_quad_lattice, lagrange_quad_nodes};
+use dgmpm::parts::io::hdf5::Values;
+use dgmpm::parts::io::seal::{self, Seal};
+use dgmpm::parts::io::snapshot::{self, Snapshot};
+use dgmpm::parts::io::store::{ArrayRef, Format, Store, write_arrays};
+use dgmpm::parts::io::{cloud_file, hash, mesh_file, pvd, vtu, xdmf};
+use dgmpm::parts::mesh::Mesh;
+use dgmpm::parts::operators::{Certificate, Class};
 use proptest::prelude::*;
 
 fn bits(values: &[f64]) -> Vec<u64> {

@@ -229,7 +229,7 @@ fn the_balance_is_there_only_where_a_ledger_asks_for_it_and_changes_no_energy() 
 #[test]
 fn balance_is_a_key_of_the_ledger_alone() {
     let scene = scene("key", "neo-hookean", "size = [1.0, 1.0], cells = [4, 4]", [WALL; 4], BOX);
-    let load = |set: &str| dgmpm::scene::Scene::load(&scene, &[set.to_owned()]);
+    let load = |set: &str| dgmpm::parts::scene::Scene::load(&scene, &[set.to_owned()]);
     assert!(load("output.0.balance=true").unwrap().wants_displacement());
     assert!(!load("output.0.balance=false").unwrap().wants_displacement());
     for wrong in ["output.0.balance=1", "output.0={kind=\"fields\", at=[0.0], balance=true}"] {

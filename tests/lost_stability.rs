@@ -6,7 +6,7 @@
 mod common;
 
 use common::{Bench, SCENE};
-use dgmpm::io::snapshot::Snapshot;
+use dgmpm::parts::io::snapshot::Snapshot;
 
 /// Smallest J at the grid nodes of a snapshot.
 fn smallest_j(snapshot: &Snapshot) -> f64 {

@@ -3,9 +3,9 @@
 
 use std::path::{Path, PathBuf};
 
-use dgmpm::io::gmsh;
-use dgmpm::mesh::quality::Quality;
-use dgmpm::mesh::{Error as MeshError, Link, Mesh, links, map, rectangle};
+use dgmpm::parts::io::gmsh;
+use dgmpm::parts::mesh::quality::Quality;
+use dgmpm::parts::mesh::{Error as MeshError, Link, Mesh, links, map, rectangle};
 use proptest::prelude::*;
 
 fn data(name: &str) -> PathBuf {

@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use dgmpm::io::gmsh;
-use dgmpm::mesh::{links, quality::Quality};
+use dgmpm::parts::io::gmsh;
+use dgmpm::parts::mesh::{links, quality::Quality};
 
 fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/gmsh").join(name)

@@ -2,11 +2,11 @@
 
 mod runs;
 
-use dgmpm::io::cloud_file;
-use dgmpm::io::mesh_file;
-use dgmpm::io::snapshot::{self, Snapshot};
-use dgmpm::operators::Line;
-use dgmpm::scene::{Histories, Scene};
+use dgmpm::parts::io::cloud_file;
+use dgmpm::parts::io::mesh_file;
+use dgmpm::parts::io::snapshot::{self, Snapshot};
+use dgmpm::parts::operators::Line;
+use dgmpm::parts::scene::{Histories, Scene};
 use runs::Table;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -160,7 +160,7 @@ fn only_cells_with_memory_leave_their_points_and_the_default_layout_is_by_law() 
     let steel = "[[material]]\ngroup=\"steel\"\nlaw=\"neo-hookean\"\nyoung=2e11\npoisson=0.3\ndensity=7800\n";
     let text = BAR.replace("[[material]]\n", &format!("{steel}[[material]]\ngroup=\"copper\"\n"));
     let text = text.replace("rectangle = { size = [0.0324, 0.0032], cells = [10, 1] }", "file = \"given.msh\"");
-    let mut mesh = dgmpm::mesh::rectangle([4.0, 2.0], [4, 2]).unwrap();
+    let mut mesh = dgmpm::parts::mesh::rectangle([4.0, 2.0], [4, 2]).unwrap();
     mesh.groups = vec!["steel".to_owned(), "copper".to_owned()];
     (0..8).for_each(|cell| mesh.cell_group[cell] = usize::from(cell % 4 >= 2));
     let parse = |sets: &[&str]| {

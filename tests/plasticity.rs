@@ -2,15 +2,15 @@
 
 mod runs;
 
-use dgmpm::exact::{Exact, J2Impact};
-use dgmpm::io::snapshot::{self, Snapshot};
-use dgmpm::lane::{Kernel, as_f64};
-use dgmpm::material::J2;
-use dgmpm::problem::{Given, Problem, Setup};
-use dgmpm::scene::Scene;
-use dgmpm::state::State;
-use dgmpm::step::Law;
-use dgmpm::step::{Corrected, Correction, Made, Motion, Scheme};
+use dgmpm::parts::exact::{Exact, J2Impact};
+use dgmpm::parts::io::snapshot::{self, Snapshot};
+use dgmpm::parts::lane::{Kernel, as_f64};
+use dgmpm::parts::material::J2;
+use dgmpm::parts::problem::{Given, Problem, Setup};
+use dgmpm::parts::scene::Scene;
+use dgmpm::parts::state::State;
+use dgmpm::parts::step::Law;
+use dgmpm::parts::step::{Corrected, Correction, Made, Motion, Scheme};
 use runs::run;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -258,7 +258,7 @@ fn a_run_goes_on_bit_for_bit_from_what_a_snapshot_holds() {
         let sets = [&format!("scheme.method={method}"), "cloud.layout=jitter", "mesh.rectangle.cells=[5,3]"];
         let straight = March::new(&sets, Kernel::widest()).steps(40);
         let half = March::new(&sets, Kernel::widest()).steps(20);
-        let snapshot = dgmpm::observe::take(&half.scheme, &half.motion.state);
+        let snapshot = dgmpm::parts::observe::take(&half.scheme, &half.motion.state);
         assert_eq!(snapshot.internal.len(), 5 * 4 * 15);
         let mut other = March::new(&sets, Kernel::widest());
         let blocks = &other.scheme.operators.blocks;
@@ -359,12 +359,12 @@ kind = "symmetry"
 fn elastic_cells_hold_nothing_and_plastic_ones_what_their_points_need() {
     let at_points = ["cloud.histories=points".to_owned()];
     let scene = Scene::parse(MIXED, Path::new("mixed.toml"), &at_points).unwrap();
-    let mut mesh = dgmpm::mesh::rectangle([4.0, 5.0], [4, 5]).unwrap();
+    let mut mesh = dgmpm::parts::mesh::rectangle([4.0, 5.0], [4, 5]).unwrap();
     mesh.groups = vec!["hard".to_owned(), "soft".to_owned()];
     (0..20).for_each(|cell| mesh.cell_group[cell] = usize::from(cell % 4 >= 2));
     // 4, 5 or 6 points a cell.
     let extra = [[0.5, 0.5], [0.3, 0.6]];
-    let mut cloud = dgmpm::cloud::Cloud { first: vec![0], xi: vec![] };
+    let mut cloud = dgmpm::parts::cloud::Cloud { first: vec![0], xi: vec![] };
     for cell in 0..20 {
         cloud.xi.extend([[0.2, 0.2], [0.2, 0.8], [0.8, 0.2], [0.8, 0.8]]);
         cloud.xi.extend(&extra[..cell % 3]);

@@ -5,8 +5,8 @@ mod python;
 
 use std::path::Path;
 
-use dgmpm::io::grid::Field;
-use dgmpm::io::{cloud_file, mesh_file, pvd, snapshot, vtu, xdmf};
+use dgmpm::parts::io::grid::Field;
+use dgmpm::parts::io::{cloud_file, mesh_file, pvd, snapshot, vtu, xdmf};
 
 const TIMES: [f64; 3] = [0.0, 1e-4 / 3.0, 3e-4];
 

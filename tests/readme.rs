@@ -1,6 +1,6 @@
 //! README and docs say what is so: their commands run, their scenes are accepted, their links lead somewhere.
 
-use dgmpm::scene::Scene;
+use dgmpm::parts::scene::Scene;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

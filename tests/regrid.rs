@@ -2,8 +2,8 @@
 
 mod runs;
 
-use dgmpm::io::snapshot;
-use dgmpm::io::{gmsh, mesh_file};
+use dgmpm::parts::io::snapshot;
+use dgmpm::parts::io::{gmsh, mesh_file};
 use runs::{Outcome, Table, range, run};
 use std::path::{Path, PathBuf};
 
@@ -149,7 +149,7 @@ fn the_smooth_box_keeps_its_order_and_its_totals_from_grid_to_grid() {
         let with_file = |k: usize| {
             let file = unstructured(folder.path(), k * n / 8);
             let back = folder.path().join(format!("square{}.h5", k * n));
-            mesh_file::write_mesh(&back, &dgmpm::mesh::rectangle([1.0, 1.0], [k * n, k * n]).unwrap()).unwrap();
+            mesh_file::write_mesh(&back, &dgmpm::parts::mesh::rectangle([1.0, 1.0], [k * n, k * n]).unwrap()).unwrap();
             let names = [&file, &back].map(|path| format!("\"{}\"", path.display()));
             let orders = [[0, 1], [1, 0]].map(|[a, b]| alternating(&format!("mesh=[{},{}]", names[a], names[b])));
             let wholly = {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use dgmpm::scene::{Mesh, Scene};
+use dgmpm::parts::scene::{Mesh, Scene};
 use proptest::prelude::*;
 
 /// A good scene; the rows of the tables replace one piece of it.
@@ -182,7 +182,7 @@ const BAD: &[Row] = &[
     ("kind = \"body-force\"", "kind = \"gravity\"", 29, 15, &["gravity is constant"]),
 ];
 
-fn parse(text: &str) -> dgmpm::error::Result<Scene> {
+fn parse(text: &str) -> dgmpm::parts::error::Result<Scene> {
     Scene::parse(text, Path::new("case.toml"), &[])
 }
 

@@ -1,7 +1,7 @@
 //! The linearised step: rates and limits of the design, known faults found, the command line.
 
 use assert_cmd::Command;
-use dgmpm::stability::{Domain, Measured, Pattern, Questions, Setup, measure};
+use dgmpm::parts::stability::{Domain, Measured, Pattern, Questions, Setup, measure};
 
 const ASKED: Questions = Questions { angles: 12, limit: false, norms: false };
 
@@ -124,7 +124,7 @@ fn norms_of_a_patch_are_those_of_its_body() {
          young = 1.0\npoisson = 0.3\ndensity = 1.0\n[[boundary]]\ngroup = \"left\"\nkind = \"periodic\"\npartner = \"right\"\n\
          [[boundary]]\ngroup = \"bottom\"\nkind = \"periodic\"\npartner = \"top\"\n\
          [scheme]\nmethod = \"ader-dgfem\"\ndegree = 1\n[time]\nend = 1.0\n";
-    let scene = dgmpm::scene::Scene::parse(text, std::path::Path::new("x.toml"), &[]).unwrap();
+    let scene = dgmpm::parts::scene::Scene::parse(text, std::path::Path::new("x.toml"), &[]).unwrap();
     let asked = Questions { angles: 3, norms: true, ..ASKED };
     let body = measure(&Setup { domain: Domain::Scene(Box::new(scene)), ..patch(&[]) }, asked).unwrap();
     let sets = ["scheme.method=ader-dgfem", "material.0.law=linear-elastic"];

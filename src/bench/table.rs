@@ -12,7 +12,7 @@ pub struct Figures {
     pub measured: Measured,
     /// Flops of a cell in a step.
     pub flops: Flops,
-    /// Bytes of a cell in a step, see [`traffic`].
+    /// Bytes of a cell in a step, see `bench::traffic`.
     pub bytes: f64,
     /// What the machine can do on as many threads.
     pub peaks: Peaks,

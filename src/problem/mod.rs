@@ -5,7 +5,7 @@
 //! studies, benches and tests all build their problems here. Nothing is printed: progress and notices go to observers.
 //!
 //! ```no_run
-//! use dgmpm::problem::Problem;
+//! use dgmpm::Problem;
 //!
 //! let mut problem = Problem::load("meshes/square_impact.toml".as_ref(), &[])?;
 //! let report = problem.run()?;

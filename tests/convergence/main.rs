@@ -14,9 +14,9 @@ mod table;
 mod time_order;
 mod walls;
 
-use dgmpm::material::LinearElastic;
-use dgmpm::step::Law;
-use dgmpm::step::{Motion, cfl};
+use dgmpm::parts::material::LinearElastic;
+use dgmpm::parts::step::Law;
+use dgmpm::parts::step::{Motion, cfl};
 use meshes::Grid;
 use problem::{Problem, manufactured};
 use solve::{GAUSS, JITTER, KINDS, Kind, MIDPOINTS, MORE, PAPER, alone, scheme, start};

@@ -1,6 +1,6 @@
 //! The families of meshes: the periodic unit square, regular or distorted at every level, and a strip.
 
-use dgmpm::mesh::{Mesh, rectangle};
+use dgmpm::parts::mesh::{Mesh, rectangle};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::f64::consts::TAU;

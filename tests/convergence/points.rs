@@ -1,8 +1,8 @@
 //! Clouds that ignore the grid, as a scene's layouts make them, and those with cells that cannot carry the degree.
 
-use dgmpm::cloud::{Cloud, Layout, Locator, Pattern, body, from_points, seed};
-use dgmpm::mesh::{Mesh, map};
-use dgmpm::operators::{Carried, Limits, Line, carry};
+use dgmpm::parts::cloud::{Cloud, Layout, Locator, Pattern, body, from_points, seed};
+use dgmpm::parts::mesh::{Mesh, map};
+use dgmpm::parts::operators::{Carried, Limits, Line, carry};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 

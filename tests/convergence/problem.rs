@@ -1,8 +1,8 @@
 //! Problems whose solution is known: what is solved, up to when, and how.
 
-use dgmpm::exact::{Dual, Exact, Manufactured};
-use dgmpm::material::{Material, NeoHookean, Past};
-use dgmpm::step::Law;
+use dgmpm::parts::exact::{Dual, Exact, Manufactured};
+use dgmpm::parts::material::{Material, NeoHookean, Past};
+use dgmpm::parts::step::Law;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

@@ -4,11 +4,11 @@ use crate::meshes::Grid;
 use crate::problem::Problem;
 use crate::solve::{Kind, MIDPOINTS, advanced, alone, scheme};
 use crate::table::{Row, hold};
-use dgmpm::boundary::Wall;
-use dgmpm::exact::{Exact, SimpleWave};
-use dgmpm::material::NeoHookean;
-use dgmpm::run::norms;
-use dgmpm::step::Law;
+use dgmpm::parts::boundary::Wall;
+use dgmpm::parts::exact::{Exact, SimpleWave};
+use dgmpm::parts::material::NeoHookean;
+use dgmpm::parts::run::norms;
+use dgmpm::parts::step::Law;
 use std::f64::consts::PI;
 use std::sync::Arc;
 

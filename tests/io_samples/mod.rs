@@ -1,10 +1,10 @@
 //! A small distorted mesh with its cloud, and fields on it whose numbers are hard to carry.
 #![allow(dead_code)]
 
-use dgmpm::cloud::Cloud;
-use dgmpm::io::grid::{Field, HighOrderGrid, Kind, PointCloud, lagrange_quad_nodes};
-use dgmpm::io::snapshot::Snapshot;
-use dgmpm::mesh::{BoundaryEdge, Mesh};
+use dgmpm::parts::cloud::Cloud;
+use dgmpm::parts::io::grid::{Field, HighOrderGrid, Kind, PointCloud, lagrange_quad_nodes};
+use dgmpm::parts::io::snapshot::Snapshot;
+use dgmpm::parts::mesh::{BoundaryEdge, Mesh};
 
 /// Cells along x and y.
 pub const SIZE: [usize; 2] = [4, 3];

@@ -1,17 +1,17 @@
 //! Clouds of all kinds, cells that cannot carry the degree, and the start from a cloud, as scenes ask for them.
 
 use crate::common::{Bench, SCENE, bits};
-use dgmpm::io::cloud_file::{self, More};
-use dgmpm::io::points;
-use dgmpm::mesh::{Mesh, rectangle};
-use dgmpm::operators::Class;
+use dgmpm::parts::io::cloud_file::{self, More};
+use dgmpm::parts::io::points;
+use dgmpm::parts::mesh::{Mesh, rectangle};
+use dgmpm::parts::operators::Class;
 
 fn mesh() -> Mesh {
     rectangle([1.0, 0.5], [4, 2]).unwrap()
 }
 
 /// What a run folder says of its points.
-fn cloud(bench: &Bench, run: &str) -> (dgmpm::cloud::Cloud, More) {
+fn cloud(bench: &Bench, run: &str) -> (dgmpm::parts::cloud::Cloud, More) {
     cloud_file::read_with(&bench.path(run).join("cloud.h5"), &mesh()).unwrap()
 }
 

@@ -1,6 +1,6 @@
 //! A folder with a scene, and the program run in it.
 
-use dgmpm::io::snapshot::{self, Snapshot};
+use dgmpm::parts::io::snapshot::{self, Snapshot};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 

@@ -2,8 +2,8 @@
 //! numbers in other units, threads that nobody has, output that nobody gets.
 
 use crate::common::{Bench, SCENE, bits};
-use dgmpm::io::{gmsh, mesh_file};
-use dgmpm::mesh::{BoundaryEdge, Mesh, rectangle};
+use dgmpm::parts::io::{gmsh, mesh_file};
+use dgmpm::parts::mesh::{BoundaryEdge, Mesh, rectangle};
 
 /// The mesh of [`SCENE`], 4 x 2 cells, with the two edges at x = .5 in a group `inside`.
 fn with_inner_edges() -> Mesh {

@@ -1,8 +1,8 @@
 //! Another grid in mid-run, and of a stopped run: messages, files, and that runs go on.
 
 use crate::common::{Bench, SCENE};
-use dgmpm::io::mesh_file;
-use dgmpm::mesh::{Mesh, rectangle};
+use dgmpm::parts::io::mesh_file;
+use dgmpm::parts::mesh::{Mesh, rectangle};
 
 /// [`SCENE`] with a [[regrid]].
 fn bench(rule: &str) -> Bench {
@@ -120,7 +120,7 @@ fn each_time_is_exported_on_its_own_grid_and_the_folder_can_be_moved_and_run_aga
     assert_eq!((grids[0], states[0].cells(), states[1].cells()), ("mesh.h5", 8, 18));
     assert_eq!(grids[1], format!("mesh_{:06}.h5", states[0].step));
     bench.run("export run");
-    let cells = |state: &dgmpm::io::snapshot::Snapshot| {
+    let cells = |state: &dgmpm::parts::io::snapshot::Snapshot| {
         let text = bench.read(&format!("run/export/grid_{:06}.vtu", state.step));
         let at = text.find("NumberOfCells=\"").unwrap() + 15;
         text[at..].split('"').next().unwrap().parse::<usize>().unwrap()
@@ -240,12 +240,12 @@ fn internal_variables_are_bit_for_bit_what_they_were_at_the_points_that_are_kept
     bench.run("regrid first --mesh new.h5 --out second");
     let histories = |run: &str| {
         let (mesh, state) = (mesh_file::read_mesh(&bench.path(run).join("mesh.h5")).unwrap(), bench.last(run));
-        let cloud = dgmpm::io::cloud_file::read_cloud_of(&bench.path(run).join("cloud.h5"), &mesh).unwrap();
+        let cloud = dgmpm::parts::io::cloud_file::read_cloud_of(&bench.path(run).join("cloud.h5"), &mesh).unwrap();
         let count = state.internal.len() / cloud.len();
         assert_eq!((count, state.internal.len() % cloud.len()), (5, 0));
         let of = |cell: usize| {
             let corners = mesh.corners(cell);
-            cloud.of(cell).iter().map(move |&xi| dgmpm::mesh::map::position(&corners, xi))
+            cloud.of(cell).iter().map(move |&xi| dgmpm::parts::mesh::map::position(&corners, xi))
         };
         let places: Vec<[f64; 2]> = (0..mesh.cells.len()).flat_map(of).collect();
         places.into_iter().zip(state.internal.chunks(5).map(<[f64]>::to_vec).collect::<Vec<_>>()).collect::<Vec<_>>()

@@ -1,7 +1,7 @@
 //! Each command on files, and the run folder.
 
 use crate::common::{Bench, bits, tree};
-use dgmpm::io::{cloud_file, mesh_file};
+use dgmpm::parts::io::{cloud_file, mesh_file};
 use predicates::prelude::*;
 
 #[test]
@@ -29,7 +29,7 @@ fn a_rectangle_is_written_inspected_and_carried_to_gmsh_and_back() {
         assert!(info.contains(words), "{words}: {info}");
     }
     let mesh = mesh_file::read_mesh(&bench.path("a.h5")).unwrap();
-    assert_eq!(mesh, dgmpm::mesh::rectangle([3.0, 1.0], [6, 2]).unwrap());
+    assert_eq!(mesh, dgmpm::parts::mesh::rectangle([3.0, 1.0], [6, 2]).unwrap());
 
     bench.run("mesh a.h5 --out a.msh");
     bench.run("mesh a.msh --out b.h5");

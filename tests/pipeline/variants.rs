@@ -111,10 +111,10 @@ fn a_body_force_accelerates_a_free_body_by_its_mean() {
 #[test]
 fn two_materials_share_a_mesh_and_each_has_its_points() {
     let bench = Bench::empty();
-    let mut mesh = dgmpm::mesh::rectangle([1.0, 0.5], [4, 2]).unwrap();
+    let mut mesh = dgmpm::parts::mesh::rectangle([1.0, 0.5], [4, 2]).unwrap();
     mesh.groups = vec!["steel".to_owned(), "lead".to_owned()];
     (0..8).for_each(|cell| mesh.cell_group[cell] = usize::from(cell % 4 > 1));
-    dgmpm::io::gmsh::write(&mesh, &bench.path("two.msh")).unwrap();
+    dgmpm::parts::io::gmsh::write(&mesh, &bench.path("two.msh")).unwrap();
     let (head, tail) = crate::common::SCENE.split_once("[initial]").unwrap();
     let head = head
         .replace("rectangle = { size = [1.0, 0.5], cells = [4, 2] }", "file = \"two.msh\"")
