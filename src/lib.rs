@@ -47,7 +47,7 @@
 //! Data flows mesh, cloud, operators, state, step, output. The order of the modules below is the order of dependency: a
 //! module uses only those above it (`tests/layers.rs` holds this). [`step::Scheme`] is read-only, [`state::State`] is all
 //! that changes, [`step::Work`] carries nothing from step to step. A new law, flux, boundary condition or source is one
-//! file and a line in its registry.
+//! file and an entry in the [`registry`].
 
 #![deny(missing_docs)]
 

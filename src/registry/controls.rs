@@ -22,7 +22,7 @@ const ALPHA: Parameter = Parameter::new(
     "rate of the control, times the degree N",
     "",
     Form::Number(POSITIVE),
-    Preset::ByDegree("3; from degree 4 on 6", |degree| if degree >= 4 { 6.0 } else { 3.0 }),
+    Preset::ByDegree("3, from degree 4 on 6", |degree| if degree >= 4 { 6.0 } else { 3.0 }),
 );
 
 /// Every control.

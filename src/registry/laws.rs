@@ -34,7 +34,7 @@ pub static LAWS: &[Entry<Build>] = &[
     },
     Entry {
         name: "j2",
-        about: "elastoplastic, finite strain: radial return in the logarithmic elastic strain; it has a memory",
+        about: J2::ABOUT,
         parameters: &[
             YOUNG,
             POISSON,
@@ -42,7 +42,7 @@ pub static LAWS: &[Entry<Build>] = &[
             Parameter::required("yield_stress", "the stress sigma_y of the first yield", "Pa", Form::Number(POSITIVE)),
             Parameter::required(
                 "hardening",
-                "H: the yield stress is sigma_y + H p; 0 is perfect plasticity",
+                "H: the yield stress grows with the strain p of the flow as sigma_y + H p; 0: it does not grow",
                 "Pa",
                 Form::Number(NOT_NEGATIVE),
             ),

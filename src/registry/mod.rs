@@ -208,3 +208,6 @@ impl Form {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -75,9 +75,9 @@ pub static OUTPUTS: &[Entry<Output>] = &[
     },
     Entry {
         name: "line",
-        about: "samples along a line of the initial configuration: lines/<name>.csv",
+        about: "samples along a line of the initial configuration: `lines/<name>.csv`",
         parameters: &[
-            Parameter { about: "the name of the file lines/<name>.csv, unique", ..named(Preset::Required) },
+            Parameter { about: "the name of the file `lines/<name>.csv`, unique", ..named(Preset::Required) },
             Parameter::required("from", "first point of the line", "m", Form::Vector(FINITE)),
             Parameter::required("to", "last point of the line", "m", Form::Vector(FINITE)),
             Parameter::required("samples", "number of samples, with equal distances", "", Form::Integer(2, 1_000_000)),

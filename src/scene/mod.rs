@@ -12,6 +12,7 @@ mod points;
 pub mod portable;
 mod read;
 mod reader;
+mod reference;
 pub mod regrid;
 mod sets;
 mod tables;
@@ -27,6 +28,7 @@ use crate::registry::controls::Control;
 use crate::registry::{self, Chosen, Method, Sweeps};
 pub use names::Histories;
 use origin::{Origin, Part};
+pub use reference::reference;
 
 /// A whole scene.
 #[derive(Debug, Clone, Serialize)]
@@ -337,5 +339,7 @@ fn document<'a>(text: &'a str, path: &Path) -> Result<Document<&'a str>> {
     })
 }
 
+#[cfg(test)]
+mod entry_tests;
 #[cfg(test)]
 mod tests;

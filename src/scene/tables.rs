@@ -20,14 +20,24 @@ fn of<T>(names: &[(&'static str, T)]) -> Vec<&'static str> {
     names.iter().map(|(name, _)| *name).collect()
 }
 
+/// The keys above all tables.
+pub(super) const TOP: &[Parameter] =
+    &[key("title", "what the scene shows, for people", "", Form::Text, Preset::Absent("the name of the file"))];
+
 pub(super) const MESH: &[Parameter] = &[
-    key("file", "a Gmsh file, or the .h5 file of `dgmpm mesh`", "", Form::Text, Preset::Absent("`rectangle` then")),
+    key(
+        "file",
+        "a Gmsh file, or the .h5 file of `dgmpm mesh`",
+        "",
+        Form::Text,
+        Preset::Absent("none: `rectangle` says what the mesh is"),
+    ),
     key(
         "rectangle",
         "a mesh without a file, with the groups left, right, bottom, top and body",
         "",
         Form::Table(grids::RECTANGLE),
-        Preset::Absent("`file` then"),
+        Preset::Absent("none: `file` says what the mesh is"),
     ),
 ];
 
@@ -36,7 +46,7 @@ pub(super) const HISTORIES: Parameter = key(
     "where laws with memory keep P and their internal variables; at the points their flow makes energy (for studies)",
     "",
     Form::Name(|| of(Histories::NAMES), &[]),
-    Preset::Absent("\"nodes\""),
+    Preset::Absent("`\"nodes\"`"),
 );
 
 pub(super) const PER_DIRECTION: Parameter = key(
@@ -52,7 +62,7 @@ pub(super) const LAYOUT: Parameter = key(
     "where the points stand",
     "",
     Form::Name(|| names(LAYOUTS), &[]),
-    Preset::Absent("\"paper\"; from degree 3 on \"midpoints\"; for laws with memory \"gauss\""),
+    Preset::Absent("`\"paper\"`; from degree 3 on `\"midpoints\"`; for laws with memory `\"gauss\"`"),
 );
 
 pub(super) const LIMITS: [Parameter; 2] = [
@@ -97,7 +107,10 @@ pub(super) const MATERIAL: &[Parameter] = &[
         Preset::Absent("that of [cloud]"),
     ),
     OWN_LAYOUT,
-    PER_DIRECTION,
+    Parameter {
+        default: Preset::Absent("that of [cloud], or more where `layout` is given and needs more points"),
+        ..PER_DIRECTION
+    },
 ];
 
 pub(super) const VELOCITY: Parameter =
@@ -152,21 +165,21 @@ pub(super) const SCHEME: &[Parameter] = &[
         "size of the time step: dt = cfl h / ((2N+1) c); a step beyond the stability limit is an error",
         "",
         Form::Number(POSITIVE),
-        Preset::Absent("`safety` then"),
+        Preset::Absent("none: `safety` says what the step is"),
     ),
     key(
         "safety",
-        "size of the time step as a share of the measured stability limit, in place of `cfl`",
+        "size of the time step as a share of the measured stability limit, in place of `cfl`; above 1 is an error",
         "",
         Form::Number(POSITIVE),
         Preset::Absent("0.9"),
     ),
     key(
         "sweeps",
-        "sweeps of the predictor: the ladder needs time_degree = degree; the paper's evaluate the law more often",
+        "sweeps of the predictor: the ladder evaluates the law less often, with the same limits and orders, and needs time_degree = degree",
         "",
         Form::Name(|| of(Sweeps::NAMES), &[]),
-        Preset::Absent("\"ladder\"; with other degrees \"paper\""),
+        Preset::Absent("`\"ladder\"`; with another time_degree `\"paper\"`"),
     ),
 ];
 
