@@ -191,7 +191,7 @@ pub static LAYOUTS: &[Entry<Layout>] = &[
         about: "the points of a file; a `path` alone means this layout",
         parameters: &[Parameter::required(
             "path",
-            "a .vtu file such as an exported points_*.vtu, a .csv file with rows x, y, or the .h5 file of `dgmpm seed`",
+            "a .vtu file such as an exported points_*.vtu, a .csv file with rows x, y in m, or the .h5 file of `dgmpm seed`",
             "",
             Form::Text,
         )],

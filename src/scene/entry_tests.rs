@@ -24,11 +24,14 @@ degree = 2
 end = 1e-6
 "#;
 
+/// `--set` from the text of further keys.
+type Sets = Box<dyn Fn(&str) -> Vec<String>>;
+
 /// An entry in a scene: its name and parameters, and the `--set` that name it, given the text of its other keys.
 struct Case {
     name: &'static str,
     parameters: &'static [Parameter],
-    sets: Box<dyn Fn(&str) -> Vec<String>>,
+    sets: Sets,
 }
 
 fn case(name: &'static str, parameters: &'static [Parameter], sets: impl Fn(&str) -> Vec<String> + 'static) -> Case {
