@@ -127,7 +127,7 @@ impl Reader<'_> {
     }
 
     /// All of a table that has these keys and no others.
-    fn all(&mut self, parameters: &[Parameter]) -> Result<Values> {
+    pub(super) fn all(&mut self, parameters: &[Parameter]) -> Result<Values> {
         let mut values = self.values(parameters)?;
         self.finish()?;
         self.complete(parameters, &mut values, 0)?;

@@ -51,6 +51,9 @@ pub(super) fn cloud(table: Option<&mut Reader>, degree: usize) -> Result<General
         layout => layout,
     };
     let cloud = points(table, layout, default, degree)?;
+    if !cloud.layout.build().is_file() {
+        table.know("path");
+    }
     let limits = table.values(&LIMITS)?;
     let limits = Limits { face_lebesgue: limits.maybe("face_lebesgue"), condition: limits.maybe("condition") };
     table.finish()?;

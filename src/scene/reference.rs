@@ -80,7 +80,7 @@ fn all(page: &mut String) {
     let about = "Another grid during the run, see \"Another grid during the run\"; none by default. One of the keys of the second \
                  table says what the new grid is. Times or `when` are required.";
     head(page, "[[regrid]]", about);
-    keys(page, &[tables::WHEN, &[tables::EXACT_TIMES], tables::REGRID].concat());
+    keys(page, &[tables::WHEN, &[tables::EXACT_TIMES], &tables::REGRID].concat());
     entries(page, "key", GRIDS, |_| String::new());
 }
 

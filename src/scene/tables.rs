@@ -255,7 +255,7 @@ pub(super) const CRITERIA: &[Parameter] = &[
     ),
 ];
 
-pub(super) const REGRID: &[Parameter] = &[
+pub(super) const REGRID: [Parameter; 2] = [
     key(
         "when",
         "at those times only if one of these conditions holds; without times it is tested every 10 steps",
