@@ -1,5 +1,5 @@
 //! Parse, run, exit code.
 
 fn main() -> std::process::ExitCode {
-    dgmpm::cli::main()
+    dgmpm::main()
 }

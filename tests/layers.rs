@@ -140,6 +140,16 @@ fn no_files_of_the_step_are_in_a_circle() {
     assert!(uses.is_empty(), "in a circle, or using one: {uses:#?}");
 }
 
+/// A scene is data: text that is checked against the tables of the registry.
+#[test]
+fn a_scene_uses_names_expressions_and_the_registry_only() {
+    let used = uses_of_module("scene");
+    let allowed = ["error", "names", "expression", "registry", "scene"];
+    let wrong: Vec<&String> = used.iter().filter(|name| !allowed.contains(&&name[..])).collect();
+    assert!(wrong.is_empty() && used.contains("registry"), "scene uses {wrong:?}");
+    assert!(uses_of_module("expression").is_subset(&["error", "names"].map(str::to_owned).into()));
+}
+
 #[test]
 fn every_folder_and_file_of_the_source_is_reached() {
     let lib = std::fs::read_to_string(source().join("lib.rs")).unwrap();

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::lane::Kernel;
 use crate::mesh::{self, Mesh};
 use crate::problem::{self, Problem};
-use crate::registry::Method;
+use crate::registry::{LAYOUTS, Method};
 use crate::scene::Scene;
 use crate::state::UNKNOWNS;
 use crate::step::Tableau;
@@ -67,7 +67,7 @@ impl Setup {
         let body = setup.body()?;
         let problem = setup.build_from(body, |mesh, scheme| Ok(wave.state(mesh, scheme)))?;
         let nodes = problem.body.mesh.cells.len() * problem.scheme.operators.nodes();
-        let points = if scene.scheme.method == Method::AderDgmpm { problem.places() } else { nodes };
+        let points = if scene.scheme.method.has_points() { problem.places() } else { nodes };
         let h = problem.body.smallest_h();
         Ok(Subject { problem, points, wave, h })
     }
@@ -126,8 +126,8 @@ impl Setup {
             _ => 1,
         };
         let files = matches!(self.domain, Domain::File(_));
-        let layouts = ["jitter", "random", "cluster", "poisson-disk", "rotated"];
-        let random = self.method == Method::AderDgmpm && self.layout.as_deref().is_some_and(|l| layouts.contains(&l));
+        let layout = self.layout.as_deref().and_then(|name| LAYOUTS.find(name));
+        let random = self.method.has_points() && layout.is_some_and(|entry| !entry.build.is_lattice);
         // State, its start, its copy at the end, the next one, the numbers before they are packed; rates.
         let unknowns = (UNKNOWNS + 2) * n * (5 + stages);
         // A trace has at most eleven numbers.

@@ -1,6 +1,6 @@
 //! Boundary conditions as star states (v*, t*) of a face point, for every interface flux.
 //!
-//! A new condition is one file with a type that implements [`Boundary`] and its entry in the registry of scenes.
+//! A new condition is one file with a type that implements [`Boundary`] and its entry in the registry.
 
 mod absorbing;
 mod free;

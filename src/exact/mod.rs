@@ -1,6 +1,6 @@
 //! Exact and manufactured solutions, and the error of a computed state against them.
 //!
-//! A new solution is one file with a type that implements [`Exact`] and its entry in the scene's registry.
+//! A new solution is one file with a type that implements [`Exact`] and its entry in the registry.
 
 mod errors;
 mod linear_bar;

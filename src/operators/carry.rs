@@ -7,7 +7,7 @@
 //! Cells of a law with memory also sample on their Gauss nodes, wherever their points are, unless the scene keeps the
 //! histories at the points. The reason: P is sampled at the points and interpolated. The power of the interpolated P
 //! against grad v is the rate of the energy of the points only if points and nodes are the same. If they differ,
-//! flow that its history remembers makes energy, because its P is rough from point to point (a Taylor bar 4 to 80 % and more, with
+//! the flow of the law makes energy, because its P is rough from point to point (a Taylor bar 4 to 80 % and more, with
 //! histories at the nodes none).
 
 use super::certificate::{Certificate, Class, of_points};

@@ -111,7 +111,7 @@ impl Case<'_> {
         })
     }
 
-    /// Kinetic and strain energy and what laws took, over those of the start and the work done; none where the
+    /// Kinetic and strain energy and what laws with memory dissipated, over those of the start and the work done; none where the
     /// work is not known.
     fn risen(&self) -> Option<f64> {
         let first = self.report.first?.accounted();

@@ -1,6 +1,6 @@
 //! The conditions on groups of boundary edges, `[[boundary]] kind = ..`.
 
-use super::{ANY, Entry, Form, Parameter, Preset, Values};
+use super::{ANY, Entry, Form, Parameter, Preset, Table, Values};
 use crate::boundary::{Absorbing, Boundary, Free, Traction, Velocity, Wall};
 use crate::expression::Expression;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ impl Condition {
 }
 
 /// Every condition. What is said of an expression that is not finite begins with the line that describes its parameter.
-pub static CONDITIONS: &[Entry<Condition>] = &[
+pub static CONDITIONS: Table<Condition> = Table::new(&[
     Entry {
         name: "wall",
         about: "rigid wall without friction, bilateral: it never opens; `speed` moves it along the outward normal",
@@ -86,4 +86,4 @@ pub static CONDITIONS: &[Entry<Condition>] = &[
         // The faces are inner faces: nothing asks for their condition.
         build: Condition { partner: Some("partner"), ..Condition::of(|_| Arc::new(Free)) },
     },
-];
+]);

@@ -1,6 +1,6 @@
 //! The controls of the part of F that is no gradient, `[curl] control = ..`.
 
-use super::{ANY, Entry, Form, POSITIVE, Parameter, Preset};
+use super::{ANY, Entry, Form, POSITIVE, Parameter, Preset, Table};
 use crate::step::Relax;
 
 /// What there is to know of a control.
@@ -22,11 +22,11 @@ const ALPHA: Parameter = Parameter::new(
     "rate of the control, times the degree N",
     "",
     Form::Number(POSITIVE),
-    Preset::ByDegree("3; from degree 4 on 6", |degree| if degree >= 4 { 6.0 } else { 3.0 }),
+    Preset::ByDegree("3, from degree 4 on 6", |degree| if degree >= 4 { 6.0 } else { 3.0 }),
 );
 
 /// Every control.
-pub static CONTROLS: &[Entry<Control>] = &[
+pub static CONTROLS: Table<Control> = Table::new(&[
     Entry {
         name: "rotation",
         about: "relaxes the rotation and the deviator of the part that is no gradient, at a rate tied to compression",
@@ -57,4 +57,4 @@ pub static CONTROLS: &[Entry<Control>] = &[
             when_lost: "[curl] control is \"off\", and a body in compression is then unstable: leave it out",
         },
     },
-];
+]);

@@ -1,6 +1,6 @@
 //! The fluxes on inner faces, `[scheme] flux = ..`.
 
-use super::{ANY, Entry};
+use super::{ANY, Entry, Table};
 use crate::riemann::{Acoustic, AcousticCurl, Dual, Rusanov};
 use crate::step;
 
@@ -21,7 +21,7 @@ const WITH_MEMORY: &str = "makes energy where a law with memory flows";
 const OTHER: &str = "scheme.flux = \"rusanov\" damps all jumps of F, and holds some corners that are crushed";
 
 /// Every flux.
-pub static FLUXES: &[Entry<Flux>] = &[
+pub static FLUXES: Table<Flux> = Table::new(&[
     Entry {
         name: "dual",
         about: "Lax-Friedrichs in velocity and traction, with the jump of the rotation of F, which does no work",
@@ -56,7 +56,7 @@ pub static FLUXES: &[Entry<Flux>] = &[
         check: ANY,
         build: Flux { make: || step::Flux::new(AcousticCurl), when_lost },
     },
-];
+]);
 
 fn when_lost(memory: bool) -> Option<&'static str> {
     Some(if memory { WITH_MEMORY } else { "holds less in compression" })

@@ -1,6 +1,6 @@
 //! The material laws, `[[material]] law = ..`.
 
-use super::{ANY, Check, Entry, Form, NOT_NEGATIVE, POSITIVE, Parameter, Values};
+use super::{ANY, Check, Entry, Form, NOT_NEGATIVE, POSITIVE, Parameter, Table, Values};
 use crate::material::{J2, LinearElastic, NeoHookean};
 use crate::step::Law;
 
@@ -18,7 +18,7 @@ const POISSON: Parameter = Parameter::required(
 );
 
 /// Every law.
-pub static LAWS: &[Entry<Build>] = &[
+pub static LAWS: Table<Build> = Table::new(&[
     Entry {
         name: "neo-hookean",
         about: "compressible neo-Hookean, finite strain, in plane strain",
@@ -35,7 +35,7 @@ pub static LAWS: &[Entry<Build>] = &[
     },
     Entry {
         name: "j2",
-        about: "elastoplastic, finite strain: radial return in the logarithmic elastic strain; it has a memory",
+        about: J2::ABOUT,
         parameters: &[
             YOUNG,
             POISSON,
@@ -43,7 +43,7 @@ pub static LAWS: &[Entry<Build>] = &[
             Parameter::required("yield_stress", "the stress sigma_y of the first yield", "Pa", Form::Number(POSITIVE)),
             Parameter::required(
                 "hardening",
-                "H: the yield stress is sigma_y + H p; 0 is perfect plasticity",
+                "H: the yield stress grows with the strain p of the flow as sigma_y + H p; 0: it does not grow",
                 "Pa",
                 Form::Number(NOT_NEGATIVE),
             ),
@@ -54,7 +54,7 @@ pub static LAWS: &[Entry<Build>] = &[
             Law::new(J2::new(young, poisson, density, of.number("yield_stress"), of.number("hardening")))
         },
     },
-];
+]);
 
 /// Whether a law has internal variables.
 pub fn has_memory(entry: &Entry<Build>) -> bool {

@@ -1,6 +1,6 @@
 //! Where material points stand, `[cloud] layout = ..` and `[[material]] layout = ..`.
 
-use super::{ANY, Check, Entry, FINITE, Form, POSITIVE, Parameter, Preset, Values};
+use super::{ANY, Check, Entry, FINITE, Form, POSITIVE, Parameter, Preset, Table, Values};
 use crate::cloud::{Cloud, Pattern, body, seed};
 use crate::mesh::Mesh;
 
@@ -62,7 +62,7 @@ fn of(layout: seed::Layout) -> InCell {
 }
 
 /// Every layout; a file last.
-pub static LAYOUTS: &[Entry<Layout>] = &[
+pub static LAYOUTS: Table<Layout> = Table::new(&[
     Entry {
         name: "paper",
         about: "lattice of the paper; the default up to degree 2",
@@ -191,14 +191,14 @@ pub static LAYOUTS: &[Entry<Layout>] = &[
         about: "the points of a file; a `path` alone means this layout",
         parameters: &[Parameter::required(
             "path",
-            "a .vtu file such as an exported points_*.vtu, a .csv file with rows x, y, or the .h5 file of `dgmpm seed`",
+            "a .vtu file such as an exported points_*.vtu, a .csv file with rows x, y in m, or the .h5 file of `dgmpm seed`",
             "",
             Form::Text,
         )],
         check: ANY,
         build: Layout { points: Points::File, more: 0, is_lattice: false, on_nodes: false },
     },
-];
+]);
 
 fn seed_of(values: &Values) -> u64 {
     values.integer("seed") as u64

@@ -1,6 +1,6 @@
 //! The methods, `[scheme] method = ..`.
 
-use super::{ANY, Entry};
+use super::{ANY, Entry, Table};
 use crate::basis::TimeBasis;
 use crate::step::{Method as Integration, Sweeps as Picard, Tableau};
 
@@ -46,7 +46,7 @@ pub enum Samples {
 }
 
 /// Every method.
-pub static METHODS: &[Entry<Build>] = &[
+pub static METHODS: Table<Build> = Table::new(&[
     Entry {
         name: "ader-dgmpm",
         about: "ADER-DG on material points: the method of the paper",
@@ -72,7 +72,7 @@ pub static METHODS: &[Entry<Build>] = &[
             integration: |_, n_t, _| Integration::RungeKutta(Tableau::of_degree(n_t)),
         },
     },
-];
+]);
 
 fn ader(n: usize, n_t: usize, sweeps: Sweeps) -> Integration {
     let time = TimeBasis::new(n_t);
@@ -87,7 +87,7 @@ impl Method {
     /// What there is to know of it.
     pub fn build(self) -> &'static Build {
         // Every method has its entry: a test holds that.
-        METHODS.iter().map(|entry| &entry.build).find(|build| build.method == self).unwrap_or(&METHODS[0].build)
+        METHODS.iter().map(|entry| &entry.build).find(|build| build.method == self).unwrap_or(&METHODS.first().build)
     }
 
     /// Whether it samples at the material points.

@@ -4,12 +4,12 @@
 //! An entry is the only place that names a thing. What reads scenes, checks them, answers "did you mean", lists what there
 //! is in messages and writes `docs/scene.md` follows from the entries; so does the problem that a scene becomes. A new law,
 //! condition, source, flux, exact solution, output, grid, layout or control of the curl is a file with a type and one entry
-//! here (`docs/extend.md`).
+//! here (`docs/extend.md`). A program that uses the crate adds entries of its own by [`Table::add`].
 //!
 //! ```
-//! use dgmpm::registry::{CONDITIONS, find};
+//! use dgmpm::registry::{CONDITIONS};
 //!
-//! let wall = find(CONDITIONS, "wall").unwrap();
+//! let wall = CONDITIONS.find("wall").unwrap();
 //! assert_eq!(wall.parameters[0].name, "speed");
 //! ```
 
@@ -24,6 +24,7 @@ pub mod outputs;
 mod parameter;
 pub mod solutions;
 pub mod sources;
+mod table;
 mod values;
 
 pub use crate::observe::Field;
@@ -39,6 +40,7 @@ pub use outputs::OUTPUTS;
 pub use parameter::*;
 pub use solutions::SOLUTIONS;
 pub use sources::SOURCES;
+pub use table::Table;
 pub use values::{Value, Values, data};
 
 use std::fmt;
@@ -131,16 +133,6 @@ impl<B> serde::Serialize for Chosen<B> {
     }
 }
 
-/// The entry of a name.
-pub fn find<B>(entries: &'static [Entry<B>], name: &str) -> Option<&'static Entry<B>> {
-    entries.iter().find(|entry| entry.name == name)
-}
-
-/// The names of all entries.
-pub fn names<B>(entries: &'static [Entry<B>]) -> Vec<&'static str> {
-    entries.iter().map(|entry| entry.name).collect()
-}
-
 /// The values of parameters that a scene does not give: the defaults.
 pub fn defaults(parameters: &'static [Parameter], degree: usize) -> Values {
     let mut values = Values::default();
@@ -208,3 +200,6 @@ impl Form {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,6 @@
 //! What is recorded, `[[output]] kind = ..`.
 
-use super::{ANY, Chosen, Entry, FINITE, Fault, Field, Form, Parameter, Preset, Value, Values};
+use super::{ANY, Chosen, Entry, FINITE, Fault, Field, Form, Parameter, Preset, Table, Value, Values};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::observe::{Contents, Ledger, Line, Observer, Outside, Samples, Schedule, Snapshots};
@@ -63,7 +63,7 @@ const fn fields(default: Preset) -> Parameter {
 }
 
 /// Every output.
-pub static OUTPUTS: &[Entry<Output>] = &[
+pub static OUTPUTS: Table<Output> = Table::new(&[
     Entry {
         name: "fields",
         about: "snapshots, for `dgmpm export`",
@@ -81,9 +81,9 @@ pub static OUTPUTS: &[Entry<Output>] = &[
     },
     Entry {
         name: "line",
-        about: "samples along a line of the initial configuration: lines/<name>.csv",
+        about: "samples along a line of the initial configuration: `lines/<name>.csv`",
         parameters: &[
-            Parameter { about: "the name of the file lines/<name>.csv, unique", ..named(Preset::Required) },
+            Parameter { about: "the name of the file `lines/<name>.csv`, unique", ..named(Preset::Required) },
             Parameter::required("from", "first point of the line", "m", Form::Vector(FINITE)),
             Parameter::required("to", "last point of the line", "m", Form::Vector(FINITE)),
             Parameter::required("samples", "number of samples, with equal distances", "", Form::Integer(2, 1_000_000)),
@@ -138,7 +138,7 @@ pub static OUTPUTS: &[Entry<Output>] = &[
             },
         },
     },
-];
+]);
 
 fn samples(of: &Values, fields: Vec<Field>) -> Samples {
     Samples { ends: [of.vector("from"), of.vector("to")], count: of.integer("samples"), fields }

@@ -1,6 +1,6 @@
 //! The exact solutions, `[exact] kind = ..`.
 
-use super::{ANY, BELOW_1, Chosen, Entry, FINITE, Fault, POSITIVE, Parameter, Values, quoted};
+use super::{ANY, BELOW_1, Chosen, Entry, FINITE, Fault, POSITIVE, Parameter, Table, Values, quoted};
 use crate::exact::{Exact, J2Impact, LinearBar, Manufactured, Riemann, SimpleWave, Vortex, WallImpact};
 use crate::step::Law;
 use std::sync::Arc;
@@ -30,7 +30,7 @@ const WIDTH: Parameter =
 const SPEED: Parameter = Parameter::number("speed", "speed against the wall", "m/s", POSITIVE, 200.0);
 
 /// Every solution.
-pub static SOLUTIONS: &[Entry<Solution>] = &[
+pub static SOLUTIONS: Table<Solution> = Table::new(&[
     Entry {
         name: "simple-wave",
         about: "a wave of finite strain that travels in one direction until it breaks",
@@ -125,7 +125,7 @@ pub static SOLUTIONS: &[Entry<Solution>] = &[
             })
         },
     },
-];
+]);
 
 /// Whether a solution holds for these laws (name and law of each `[[material]]`) and until the end of the run, s.
 ///

@@ -1,6 +1,6 @@
 //! The forces on the volume, `[[source]] kind = ..`.
 
-use super::{ANY, Entry, Fault, Form, Parameter, Values};
+use super::{ANY, Entry, Fault, Form, Parameter, Table, Values};
 use crate::source::{BodyForce, Source};
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ pub type Build = fn(&Values, Option<usize>) -> Arc<dyn Source>;
 const VALUE: Parameter = Parameter::required("value", "the body force", "m/s^2", Form::Expressions(2));
 
 /// Every source.
-pub static SOURCES: &[Entry<Build>] = &[
+pub static SOURCES: Table<Build> = Table::new(&[
     Entry {
         name: "body-force",
         about: "force per unit mass, which may depend on place and time",
@@ -32,4 +32,4 @@ pub static SOURCES: &[Entry<Build>] = &[
         },
         build: |of, material| Arc::new(BodyForce { value: of.pair("value"), material }),
     },
-];
+]);

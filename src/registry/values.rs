@@ -58,6 +58,8 @@ impl Values {
 
     /// The value of a parameter, where it has one.
     pub fn get(&self, name: &str) -> Option<&Value> {
+        #[cfg(test)]
+        tests::ASKED.with_borrow_mut(|asked| asked.insert(name.to_owned()));
         self.0.get(name)
     }
 
@@ -179,4 +181,15 @@ impl Values {
 pub fn data(expression: &Expression) -> Data {
     let expression = expression.clone();
     Arc::new(move |x, t| expression.eval(x, t))
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use std::cell::RefCell;
+    use std::collections::BTreeSet;
+
+    thread_local! {
+        /// The names that getters were asked for.
+        pub static ASKED: RefCell<BTreeSet<String>> = const { RefCell::new(BTreeSet::new()) };
+    }
 }

@@ -4,6 +4,7 @@
 //! mesh is checked by [`Scene::check_mesh`]. Every message has file, line and column (or the `--set` at fault)
 //! and lists what exists. A scene knows neither mesh nor solver: names become types elsewhere. Units are SI.
 
+mod given;
 mod groups;
 mod names;
 mod origin;
@@ -12,6 +13,7 @@ mod points;
 pub mod portable;
 mod read;
 mod reader;
+mod reference;
 pub mod regrid;
 mod sets;
 mod tables;
@@ -27,6 +29,7 @@ use crate::registry::controls::Control;
 use crate::registry::{self, Chosen, Method, Sweeps};
 pub use names::Histories;
 use origin::{Origin, Part};
+pub use reference::reference;
 
 /// A whole scene.
 #[derive(Debug, Clone, Serialize)]
@@ -337,5 +340,7 @@ fn document<'a>(text: &'a str, path: &Path) -> Result<Document<&'a str>> {
     })
 }
 
+#[cfg(test)]
+mod entry_tests;
 #[cfg(test)]
 mod tests;

@@ -71,7 +71,7 @@ pub(super) fn outputs(tables: Vec<Reader>, materials: &[Material], start: f64, d
 }
 
 fn output(table: &mut Reader, degree: usize) -> Result<Output> {
-    let entry = table.entry(&OUTPUT[0], OUTPUTS)?;
+    let entry = table.entry(&OUTPUT[0], &OUTPUTS)?;
     table.of_kind(entry.name);
     let times = when(table)?;
     let exact_times = match times {

@@ -5,7 +5,7 @@ use super::tables::{HISTORIES, LAYOUT, LIMITS, OWN_LAYOUT, PER_DIRECTION};
 use super::{Cloud, Histories, Limits};
 use crate::error::Result;
 use crate::registry::layouts::{self, Layout};
-use crate::registry::{Chosen, Entry, LAYOUTS, defaults, find};
+use crate::registry::{Chosen, Entry, LAYOUTS, defaults};
 
 /// What `[cloud]` says for all materials.
 pub(super) struct General {
@@ -27,7 +27,7 @@ pub(super) fn keys() -> impl Iterator<Item = &'static str> {
 
 /// The layout of a name, with its defaults.
 fn usual(name: &str) -> Chosen<Layout> {
-    let entry = find(LAYOUTS, name).unwrap_or(&LAYOUTS[0]);
+    let entry = LAYOUTS.find(name).unwrap_or(LAYOUTS.first());
     Chosen { entry, values: defaults(entry.parameters, 0) }
 }
 
@@ -38,7 +38,7 @@ pub(super) fn cloud(table: Option<&mut Reader>, degree: usize) -> Result<General
         let limits = Limits { face_lebesgue: None, condition: None };
         return Ok(General { cloud: default, limits, named: false, histories: Histories::Nodes });
     };
-    let layout = table.maybe_entry(&LAYOUT, LAYOUTS)?;
+    let layout = table.maybe_entry(&LAYOUT, &LAYOUTS)?;
     let histories = histories(table)?.unwrap_or(Histories::Nodes);
     let given = layout.is_some() || table.has("path");
     // A path says that the points come from a file.
@@ -51,6 +51,9 @@ pub(super) fn cloud(table: Option<&mut Reader>, degree: usize) -> Result<General
         layout => layout,
     };
     let cloud = points(table, layout, default, degree)?;
+    if !cloud.layout.build().is_file() {
+        table.know("path");
+    }
     let limits = table.values(&LIMITS)?;
     let limits = Limits { face_lebesgue: limits.maybe("face_lebesgue"), condition: limits.maybe("condition") };
     table.finish()?;
@@ -81,7 +84,7 @@ pub(super) fn of_material(
         return Err(table.wrong("histories", what, "remove this key"));
     }
     let histories = has_memory.then(|| histories.unwrap_or(general.histories));
-    let layout = table.maybe_entry(&OWN_LAYOUT, LAYOUTS)?;
+    let layout = table.maybe_entry(&OWN_LAYOUT, &LAYOUTS)?;
     if cloud.layout.build().is_file() && (layout.is_some() || table.has("per_direction")) {
         let key = if layout.is_some() { "layout" } else { "per_direction" };
         let remedy = "remove this key, or change [cloud] layout";

@@ -8,7 +8,7 @@ use super::{Boundary, Cloud, Exact, Initial, Material, Mesh, Scene, Scheme, Sour
 use crate::error::Result;
 use crate::expression::Expression;
 use crate::registry::{
-    CONDITIONS, CONTROLS, Chosen, FLUXES, LAWS, METHODS, SOLUTIONS, SOURCES, Sweeps, controls, defaults, find, laws,
+    CONDITIONS, CONTROLS, Chosen, FLUXES, LAWS, METHODS, SOLUTIONS, SOURCES, Sweeps, controls, defaults, laws,
 };
 use std::path::PathBuf;
 use toml_edit::Document;
@@ -86,10 +86,10 @@ fn scheme(table: &mut Reader) -> Result<Scheme> {
     let mut values = table.values(tables::SCHEME)?;
     table.finish()?;
     table.complete(tables::SCHEME, &mut values, 0)?;
-    let (method, flux) = (find(METHODS, values.text("method")), find(FLUXES, values.text("flux")));
+    let (method, flux) = (METHODS.find(values.text("method")), FLUXES.find(values.text("flux")));
     // Both names have been found in their lists.
-    let method = method.unwrap_or(&METHODS[0]).build.method;
-    let flux = Chosen { entry: flux.unwrap_or(&FLUXES[0]), values: Default::default() };
+    let method = method.unwrap_or(METHODS.first()).build.method;
+    let flux = Chosen { entry: flux.unwrap_or(FLUXES.first()), values: Default::default() };
     let degree = values.integer("degree");
     let step = match (values.maybe("cfl"), values.maybe("safety")) {
         (Some(cfl), None) => Step::Cfl(cfl),
@@ -134,7 +134,7 @@ fn materials(tables: &mut [Reader], general: &General, degree: usize) -> Result<
 
 fn material(table: &mut Reader, general: &General, degree: usize) -> Result<Material> {
     let group = table.text("group")?;
-    let law = table.entry(&tables::LAW, LAWS)?;
+    let law = table.entry(&tables::LAW, &LAWS)?;
     let mut values = table.values(law.parameters)?;
     let (cloud, histories) = super::points::of_material(table, general, law.name, laws::has_memory(law), degree)?;
     table.finish()?;
@@ -201,7 +201,7 @@ fn at_start(table: &Reader, key: &str, expressions: &[Expression]) -> Result<()>
 /// Reads `[exact]`; `initial` says whether the solution gives the initial state.
 fn exact(table: Option<&mut Reader>, initial: bool, degree: usize) -> Result<Option<Exact>> {
     let Some(table) = table else { return Ok(None) };
-    let entry = table.entry(&tables::EXACT[0], SOLUTIONS)?;
+    let entry = table.entry(&tables::EXACT[0], &SOLUTIONS)?;
     Ok(Some(Exact { solution: table.rest(entry, degree)?, initial }))
 }
 
@@ -240,7 +240,7 @@ fn boundary(table: &mut Reader, degree: usize) -> Result<Boundary> {
     table.later(&["gap", "friction"]);
     let [group, kind] = [&tables::BOUNDARY[..1], &tables::BOUNDARY[1..]];
     let mut named = table.values(group)?;
-    let entry = table.entry(&kind[0], CONDITIONS)?;
+    let entry = table.entry(&kind[0], &CONDITIONS)?;
     let condition = table.rest(entry, degree)?;
     table.complete(group, &mut named, degree)?;
     Ok(Boundary { group: named.text("group").to_owned(), condition })
@@ -248,16 +248,16 @@ fn boundary(table: &mut Reader, degree: usize) -> Result<Boundary> {
 
 fn source(mut table: Reader, degree: usize) -> Result<Source> {
     let group = table.text("group")?;
-    let entry = table.entry(&tables::SOURCE[1], SOURCES)?;
+    let entry = table.entry(&tables::SOURCE[1], &SOURCES)?;
     Ok(Source { group, source: table.rest(entry, degree)? })
 }
 
 fn curl(table: Option<&mut Reader>, degree: usize) -> Result<Chosen<controls::Control>> {
-    let default = find(CONTROLS, controls::DEFAULT).unwrap_or(&CONTROLS[0]);
+    let default = CONTROLS.find(controls::DEFAULT).unwrap_or(CONTROLS.first());
     let Some(table) = table else {
         return Ok(Chosen { entry: default, values: defaults(default.parameters, degree) });
     };
-    let entry = table.maybe_entry(&tables::CURL[0], CONTROLS)?;
+    let entry = table.maybe_entry(&tables::CURL[0], &CONTROLS)?;
     table.rest(entry.unwrap_or(default), degree)
 }
 

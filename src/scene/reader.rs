@@ -1,5 +1,5 @@
-//! Reads one table of a scene by the parameters that it may have: each value is checked for its form and range,
-//! [`Reader::finish`] refuses the keys that nobody asked for, and every message has its place.
+//! Reads one table of a scene key by key: each getter checks the form, [`Reader::finish`] refuses the keys that nobody
+//! asked for, and every message has its place.
 
 use toml_edit::{Item, TableLike, Value as Toml};
 
@@ -7,16 +7,16 @@ use super::origin::{Origin, Part};
 use crate::error::{Error, Result};
 use crate::expression::Expression;
 use crate::names;
-use crate::registry::{Check, Chosen, Entry, Fault, Form, Parameter, Preset, Value, Values, find, quoted};
+use crate::registry::{Check, Parameter, quoted};
 
 /// A table that is being read.
 pub(super) struct Reader<'a> {
     table: &'a dyn TableLike,
     path: Vec<String>,
-    origin: &'a Origin,
+    pub(super) origin: &'a Origin,
     /// How messages name the table, for instance "[scheme]".
     title: String,
-    known: Vec<&'static str>,
+    pub(super) known: Vec<&'static str>,
     later: &'static [&'static str],
 }
 
@@ -108,136 +108,8 @@ impl<'a> Reader<'a> {
         all.try_into().map(Some).map_err(|_| self.count(key, N, count))
     }
 
-    /// What the table gives for some parameters.
-    pub(super) fn values(&mut self, parameters: &[Parameter]) -> Result<Values> {
-        let mut values = Values::default();
-        for parameter in parameters {
-            if let Some(value) = self.value(parameter)? {
-                values.set(parameter.name, value);
-            }
-        }
-        Ok(values)
-    }
-
-    /// Adds the defaults of parameters that the table does not give; those that it must give are missing.
-    pub(super) fn complete(&self, parameters: &[Parameter], values: &mut Values, degree: usize) -> Result<()> {
-        for parameter in parameters.iter().filter(|parameter| !self.has(parameter.name)) {
-            if let Preset::Required = parameter.default {
-                return Err(self.missing(parameter.name, &format!("{}: {}", parameter.about, parameter.words())));
-            }
-            if let Some(value) = parameter.default.value(degree) {
-                values.set(parameter.name, value);
-            }
-        }
-        Ok(())
-    }
-
-    /// The entry that a key names, if the key is there.
-    pub(super) fn maybe_entry<B>(
-        &mut self,
-        key: &Parameter,
-        entries: &'static [Entry<B>],
-    ) -> Result<Option<&'static Entry<B>>> {
-        let values = self.values(std::slice::from_ref(key))?;
-        Ok(values.maybe_text(key.name).and_then(|name| find(entries, name)))
-    }
-
-    /// The entry that a key names.
-    pub(super) fn entry<B>(&mut self, key: &Parameter, entries: &'static [Entry<B>]) -> Result<&'static Entry<B>> {
-        let entry = self.maybe_entry(key, entries)?;
-        entry.ok_or_else(|| self.missing(key.name, &format!("{}: {}", key.about, key.words())))
-    }
-
-    /// All that is left of a table: the parameters of an entry, which is its kind.
-    pub(super) fn rest<B>(&mut self, entry: &'static Entry<B>, degree: usize) -> Result<Chosen<B>> {
-        self.of_kind(entry.name);
-        self.rest_of(entry, degree)
-    }
-
-    /// All that is left of a table: the parameters of an entry.
-    pub(super) fn rest_of<B>(&mut self, entry: &'static Entry<B>, degree: usize) -> Result<Chosen<B>> {
-        let mut values = self.values(entry.parameters)?;
-        self.finish()?;
-        self.complete(entry.parameters, &mut values, degree)?;
-        self.fits(entry, &values)?;
-        Ok(Chosen { entry, values })
-    }
-
-    /// Whether the values of an entry fit together.
-    pub(super) fn fits<B>(&self, entry: &Entry<B>, values: &Values) -> Result<()> {
-        (entry.check)(values).map_err(|fault| self.fault(&fault))
-    }
-
-    /// A fault of values as an error at their key.
-    pub(super) fn fault(&self, fault: &Fault) -> Error {
-        let path: Vec<&str> = fault.key.split('.').collect();
-        self.origin.error(&self.below(&path), Part::Value, &fault.what, &fault.remedy)
-    }
-
-    /// A key that the table may have.
-    pub(super) fn know(&mut self, key: &'static str) {
-        self.known.push(key);
-    }
-
-    /// What the table gives for a parameter.
-    fn value(&mut self, parameter: &Parameter) -> Result<Option<Value>> {
-        self.value_of(parameter, &parameter.form)
-    }
-
-    fn value_of(&mut self, parameter: &Parameter, form: &Form) -> Result<Option<Value>> {
-        let key = parameter.name;
-        Ok(match form {
-            Form::Number(check) => {
-                let Some(item) = self.item(key) else { return Ok(None) };
-                let number = item.as_value().and_then(number_of).filter(|n| (check.holds)(*n));
-                Some(Value::Number(number.ok_or_else(|| self.not(key, &form.words(parameter.unit), item))?))
-            }
-            Form::Integer(from, to) => {
-                let Some(item) = self.item(key) else { return Ok(None) };
-                let number = item.as_integer().and_then(|n| usize::try_from(n).ok());
-                let number = number.filter(|n| (from..=to).contains(&n));
-                Some(Value::Integer(number.ok_or_else(|| self.not(key, &form.words(""), item))?))
-            }
-            Form::Boolean => self.boolean(key)?.map(Value::Boolean),
-            Form::Numbers(check) => self.numbers(parameter, check)?.map(Value::Numbers),
-            Form::Vector(check) => match self.numbers(parameter, check)? {
-                Some(numbers) if numbers.len() != 2 => return Err(self.count(key, 2, numbers.len())),
-                numbers => numbers.map(Value::Numbers),
-            },
-            Form::Text => self.text(key)?.map(Value::Text),
-            Form::Texts => self.texts(key)?.map(Value::Texts),
-            Form::Expression => {
-                let Some(item) = self.item(key) else { return Ok(None) };
-                let value = item.as_value().ok_or_else(|| self.not(key, EXPRESSION, item))?;
-                Some(Value::Expression(self.compile(&[key], value)?))
-            }
-            Form::Expressions(count) => self.list_of_expressions(key, *count)?.map(Value::Expressions),
-            Form::Name(names, later) => self.name(key, &names(), later)?.map(Value::Text),
-            Form::Names(names) => self.names(key, &names())?.map(Value::Texts),
-            Form::Table(keys) => match self.table(key)? {
-                Some(mut table) => Some(Value::Table(table.all(keys)?)),
-                None => None,
-            },
-            Form::Tables(keys) => {
-                let mut tables = self.tables(key)?;
-                let all = tables.iter_mut().map(|table| table.all(keys)).collect::<Result<Vec<_>>>()?;
-                (!all.is_empty()).then_some(Value::Tables(all))
-            }
-            Form::Or(word, _) if self.is_text(key, word) => self.text(key)?.map(Value::Text),
-            Form::Or(_, other) => return self.value_of(parameter, other),
-        })
-    }
-
-    /// All of a table that has these keys and no others.
-    fn all(&mut self, parameters: &[Parameter]) -> Result<Values> {
-        let mut values = self.values(parameters)?;
-        self.finish()?;
-        self.complete(parameters, &mut values, 0)?;
-        Ok(values)
-    }
-
     /// A text, or a list of texts.
-    fn texts(&mut self, key: &'static str) -> Result<Option<Vec<String>>> {
+    pub(super) fn texts(&mut self, key: &'static str) -> Result<Option<Vec<String>>> {
         if self.table.get(key).is_none_or(|item| !item.is_array()) {
             return Ok(self.text(key)?.map(|text| vec![text]));
         }
@@ -249,7 +121,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A list of finite numbers in a range.
-    fn numbers(&mut self, parameter: &Parameter, check: &Check) -> Result<Option<Vec<f64>>> {
+    pub(super) fn numbers(&mut self, parameter: &Parameter, check: &Check) -> Result<Option<Vec<f64>>> {
         let key = parameter.name;
         let Some(item) = self.item(key) else { return Ok(None) };
         let want = "a list of numbers, as in [1.0, 2.0]";
@@ -263,7 +135,7 @@ impl<'a> Reader<'a> {
     }
 
     /// One of some names; the names of `later` are known but not built yet.
-    fn name(&mut self, key: &'static str, names: &[&'static str], later: &[&str]) -> Result<Option<String>> {
+    pub(super) fn name(&mut self, key: &'static str, names: &[&'static str], later: &[&str]) -> Result<Option<String>> {
         let Some(item) = self.item(key) else { return Ok(None) };
         let want = || format!("one of {}", quoted(names));
         let text = item.as_str().ok_or_else(|| self.not(key, &want(), item))?;
@@ -271,7 +143,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A list of names, each once.
-    fn names(&mut self, key: &'static str, names: &[&'static str]) -> Result<Option<Vec<String>>> {
+    pub(super) fn names(&mut self, key: &'static str, names: &[&'static str]) -> Result<Option<Vec<String>>> {
         let Some(item) = self.item(key) else { return Ok(None) };
         let want = || format!("a list of names out of {}", quoted(names));
         let list = item.as_array().filter(|list| !list.is_empty()).ok_or_else(|| self.not(key, &want(), item))?;
@@ -288,7 +160,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A list of expressions of x, y, t.
-    fn list_of_expressions(&mut self, key: &'static str, count: usize) -> Result<Option<Vec<Expression>>> {
+    pub(super) fn list_of_expressions(&mut self, key: &'static str, count: usize) -> Result<Option<Vec<Expression>>> {
         let Some(item) = self.item(key) else { return Ok(None) };
         let list = item.as_array().ok_or_else(|| self.not(key, &format!("a list of {count} expressions"), item))?;
         if list.len() != count {
@@ -325,12 +197,12 @@ impl<'a> Reader<'a> {
     }
 
     /// The value of a key, which is known from now on.
-    fn item(&mut self, key: &'static str) -> Option<&'a Item> {
+    pub(super) fn item(&mut self, key: &'static str) -> Option<&'a Item> {
         self.known.push(key);
         self.table.get(key)
     }
 
-    fn below(&self, keys: &[&str]) -> Vec<String> {
+    pub(super) fn below(&self, keys: &[&str]) -> Vec<String> {
         self.path.iter().cloned().chain(keys.iter().map(|key| (*key).to_owned())).collect()
     }
 
@@ -348,7 +220,7 @@ impl<'a> Reader<'a> {
         Err(self.origin.error(&path, Part::Value, format!("unknown `{}` \"{}\"", keys[0], short(text)), remedy))
     }
 
-    fn compile(&self, keys: &[&str], value: &Toml) -> Result<Expression> {
+    pub(super) fn compile(&self, keys: &[&str], value: &Toml) -> Result<Expression> {
         let path = self.below(keys);
         if let Some(number) = number_of(value) {
             return Ok(Expression::number(number));
@@ -374,7 +246,7 @@ impl<'a> Reader<'a> {
         self.origin.error(&path, Part::Key, what, remedy)
     }
 
-    fn count(&self, key: &str, want: usize, given: usize) -> Error {
+    pub(super) fn count(&self, key: &str, want: usize, given: usize) -> Error {
         let order = match want {
             2 => "one for each direction",
             4 => "11, 12, 21, 22",
@@ -383,7 +255,7 @@ impl<'a> Reader<'a> {
         self.wrong(key, format!("`{key}` must have {want} entries, not {given}"), order)
     }
 
-    fn not(&self, key: &str, want: &str, item: &Item) -> Error {
+    pub(super) fn not(&self, key: &str, want: &str, item: &Item) -> Error {
         self.wrong(key, format!("`{key}` is {}", describe(item.as_value())), format!("it must be {want}"))
     }
 
@@ -393,10 +265,10 @@ impl<'a> Reader<'a> {
     }
 }
 
-const EXPRESSION: &str = "an expression of x, y, t in quotes, or a number";
+pub(super) const EXPRESSION: &str = "an expression of x, y, t in quotes, or a number";
 
 /// The finite number that a value is.
-fn number_of(value: &Toml) -> Option<f64> {
+pub(super) fn number_of(value: &Toml) -> Option<f64> {
     let number = value.as_float().or_else(|| value.as_integer().map(|n| n as f64));
     number.filter(|n| n.is_finite())
 }

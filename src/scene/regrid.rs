@@ -61,13 +61,12 @@ fn regrid(table: &mut Reader, degree: usize) -> Result<Regrid> {
         Some(When::At(_) | When::Every(_)) => table.boolean(EXACT_TIMES.name)?.unwrap_or(false),
         _ => false,
     };
-    let values = table.values(REGRID)?;
-    let criteria = values.table("when").map(Criteria::of);
-    if criteria.is_some_and(|criteria| criteria.are_none()) {
-        let names: Vec<&str> = CRITERIA.iter().map(|key| key.name).collect();
-        let what = "[regrid.when] names no condition";
-        return Err(table.wrong("when", what, format!("give at least one of {}", names.join(", "))));
-    }
+    let [when, points] = REGRID.each_ref().map(std::slice::from_ref);
+    let criteria = match table.table(when[0].name)? {
+        Some(mut table) => Some(criteria(&mut table)?),
+        None => None,
+    };
+    let values = table.values(points)?;
     let policy = Policy::NAMES.iter().find(|(name, _)| *name == values.text("points")).map(|(_, policy)| *policy);
     let grid = grid(table, degree)?;
     let when = match (times, criteria) {
@@ -79,6 +78,14 @@ fn regrid(table: &mut Reader, degree: usize) -> Result<Regrid> {
     };
     let (criteria, points) = (criteria.unwrap_or_default(), policy.unwrap_or(Policy::Keep));
     Ok(Regrid { when, exact_times, criteria, grid, points })
+}
+
+fn criteria(table: &mut Reader) -> Result<Criteria> {
+    let criteria = Criteria::of(&table.all(CRITERIA)?);
+    match criteria.are_none() {
+        true => Err(table.missing("certificate", "or distortion, or front: at least one")),
+        false => Ok(criteria),
+    }
 }
 
 /// One of the keys that name a grid, and what belongs to it.
@@ -94,8 +101,8 @@ fn grid(table: &mut Reader, degree: usize) -> Result<Chosen<Grid>> {
         None => {
             GRIDS.iter().for_each(|entry| table.know(entry.name));
             table.finish()?;
-            let others: Vec<&str> = GRIDS[1..].iter().map(|entry| entry.name).collect();
-            Err(table.missing(GRIDS[0].name, &format!("or another of {}", others.join(", "))))
+            let others: Vec<&str> = GRIDS.iter().skip(1).map(|entry| entry.name).collect();
+            Err(table.missing(GRIDS.first().name, &format!("or another of {}", others.join(", "))))
         }
     }
 }

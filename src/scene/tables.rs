@@ -4,7 +4,7 @@
 use super::Histories;
 use crate::registry::{
     AT_LEAST_1, Check, FINITE, FLUXES, Form, METHODS, NOT_NEGATIVE, POSITIVE, Parameter, Policy, Preset, SHARE, Sweeps,
-    controls, fluxes, names,
+    controls, fluxes,
 };
 use crate::registry::{CONDITIONS, CONTROLS, LAWS, LAYOUTS, OUTPUTS, SOLUTIONS, SOURCES, grids};
 
@@ -20,14 +20,24 @@ fn of<T>(names: &[(&'static str, T)]) -> Vec<&'static str> {
     names.iter().map(|(name, _)| *name).collect()
 }
 
+/// The keys above all tables.
+pub(super) const TOP: &[Parameter] =
+    &[key("title", "what the scene shows, for people", "", Form::Text, Preset::Absent("the name of the file"))];
+
 pub(super) const MESH: &[Parameter] = &[
-    key("file", "a Gmsh file, or the .h5 file of `dgmpm mesh`", "", Form::Text, Preset::Absent("`rectangle` then")),
+    key(
+        "file",
+        "a Gmsh file, or the .h5 file of `dgmpm mesh`",
+        "",
+        Form::Text,
+        Preset::Absent("none: `rectangle` says what the mesh is"),
+    ),
     key(
         "rectangle",
         "a mesh without a file, with the groups left, right, bottom, top and body",
         "",
         Form::Table(grids::RECTANGLE),
-        Preset::Absent("`file` then"),
+        Preset::Absent("none: `file` says what the mesh is"),
     ),
 ];
 
@@ -36,7 +46,7 @@ pub(super) const HISTORIES: Parameter = key(
     "where laws with memory keep P and their internal variables; at the points their flow makes energy (for studies)",
     "",
     Form::Name(|| of(Histories::NAMES), &[]),
-    Preset::Absent("\"nodes\""),
+    Preset::Absent("`\"nodes\"`"),
 );
 
 pub(super) const PER_DIRECTION: Parameter = key(
@@ -51,8 +61,8 @@ pub(super) const LAYOUT: Parameter = key(
     "layout",
     "where the points stand",
     "",
-    Form::Name(|| names(LAYOUTS), &[]),
-    Preset::Absent("\"paper\"; from degree 3 on \"midpoints\"; for laws with memory \"gauss\""),
+    Form::Name(|| LAYOUTS.names(), &[]),
+    Preset::Absent("`\"paper\"`; from degree 3 on `\"midpoints\"`; for laws with memory `\"gauss\"`"),
 );
 
 pub(super) const LIMITS: [Parameter; 2] = [
@@ -78,7 +88,7 @@ fn own_layouts() -> Vec<&'static str> {
     LAYOUTS.iter().filter(|entry| !entry.build.is_file()).map(|entry| entry.name).collect()
 }
 
-pub(super) const LAW: Parameter = needed("law", "the law", "", Form::Name(|| names(LAWS), &[]));
+pub(super) const LAW: Parameter = needed("law", "the law", "", Form::Name(|| LAWS.names(), &[]));
 pub(super) const OWN_LAYOUT: Parameter = key(
     "layout",
     "as in [cloud], with its keys, for the points of this group",
@@ -97,7 +107,10 @@ pub(super) const MATERIAL: &[Parameter] = &[
         Preset::Absent("that of [cloud]"),
     ),
     OWN_LAYOUT,
-    PER_DIRECTION,
+    Parameter {
+        default: Preset::Absent("that of [cloud], or more where `layout` is given and needs more points"),
+        ..PER_DIRECTION
+    },
 ];
 
 pub(super) const VELOCITY: Parameter =
@@ -125,16 +138,16 @@ pub(super) const FROM: Parameter = key(
 );
 pub(super) const INITIAL: &[Parameter] = &[VELOCITY, DEFORMATION, SNAPSHOT, FROM];
 
-pub(super) const EXACT: &[Parameter] = &[needed("kind", "the solution", "", Form::Name(|| names(SOLUTIONS), &[]))];
+pub(super) const EXACT: &[Parameter] = &[needed("kind", "the solution", "", Form::Name(|| SOLUTIONS.names(), &[]))];
 
 pub(super) const BOUNDARY: &[Parameter] = &[
     needed("group", "the group of edges in the mesh, such as \"left\"", "", Form::Text),
-    needed("kind", "the condition", "", Form::Name(|| names(CONDITIONS), &["unilateral", "contact"])),
+    needed("kind", "the condition", "", Form::Name(|| CONDITIONS.names(), &["unilateral", "contact"])),
 ];
 
 pub(super) const SOURCE: &[Parameter] = &[
     key("group", "the group of cells that it acts on", "", Form::Text, Preset::Absent("all cells")),
-    needed("kind", "the source", "", Form::Name(|| names(SOURCES), &[])),
+    needed("kind", "the source", "", Form::Name(|| SOURCES.names(), &[])),
 ];
 
 /// The share of the measured limit that a step is, where the scene says nothing of it.
@@ -143,35 +156,35 @@ pub(super) const SAFETY: f64 = 0.9;
 const DEGREE: Form = Form::Integer(0, 6);
 
 pub(super) const SCHEME: &[Parameter] = &[
-    needed("method", "the method", "", Form::Name(|| names(METHODS), &[])),
+    needed("method", "the method", "", Form::Name(|| METHODS.names(), &[])),
     needed("degree", "degree N of the polynomials in space", "", DEGREE),
     key("time_degree", "degree N_T in time", "", DEGREE, Preset::Absent("`degree`")),
-    key("flux", "the flux on inner faces", "", Form::Name(|| names(FLUXES), &[]), Preset::Name(fluxes::DEFAULT)),
+    key("flux", "the flux on inner faces", "", Form::Name(|| FLUXES.names(), &[]), Preset::Name(fluxes::DEFAULT)),
     key(
         "cfl",
         "size of the time step: dt = cfl h / ((2N+1) c); a step beyond the stability limit is an error",
         "",
         Form::Number(POSITIVE),
-        Preset::Absent("`safety` then"),
+        Preset::Absent("none: `safety` says what the step is"),
     ),
     key(
         "safety",
-        "size of the time step as a share of the measured stability limit, in place of `cfl`",
+        "size of the time step as a share of the measured stability limit, in place of `cfl`; above 1 is an error",
         "",
         Form::Number(POSITIVE),
         Preset::Absent("0.9"),
     ),
     key(
         "sweeps",
-        "sweeps of the predictor: the ladder needs time_degree = degree; the paper's evaluate the law more often",
+        "sweeps of the predictor: the ladder evaluates the law less often, with the same limits and orders, and needs time_degree = degree",
         "",
         Form::Name(|| of(Sweeps::NAMES), &[]),
-        Preset::Absent("\"ladder\"; with other degrees \"paper\""),
+        Preset::Absent("`\"ladder\"`; with another time_degree `\"paper\"`"),
     ),
 ];
 
 pub(super) const CURL: &[Parameter] =
-    &[key("control", "the control", "", Form::Name(|| names(CONTROLS), &["auto"]), Preset::Name(controls::DEFAULT))];
+    &[key("control", "the control", "", Form::Name(|| CONTROLS.names(), &["auto"]), Preset::Name(controls::DEFAULT))];
 
 pub(super) const TIME: &[Parameter] = &[
     key("start", "time of the initial state", "s", Form::Number(FINITE), Preset::Number(0.0)),
@@ -216,7 +229,7 @@ pub(super) const EXACT_TIMES: Parameter = key(
     Preset::Boolean(false),
 );
 
-pub(super) const OUTPUT: &[Parameter] = &[needed("kind", "what is recorded", "", Form::Name(|| names(OUTPUTS), &[]))];
+pub(super) const OUTPUT: &[Parameter] = &[needed("kind", "what is recorded", "", Form::Name(|| OUTPUTS.names(), &[]))];
 
 pub(super) const CRITERIA: &[Parameter] = &[
     key(
@@ -242,7 +255,7 @@ pub(super) const CRITERIA: &[Parameter] = &[
     ),
 ];
 
-pub(super) const REGRID: &[Parameter] = &[
+pub(super) const REGRID: [Parameter; 2] = [
     key(
         "when",
         "at those times only if one of these conditions holds; without times it is tested every 10 steps",

@@ -1,5 +1,5 @@
 use super::*;
-use crate::registry::{self, Entry, FLUXES, LAYOUTS, find};
+use crate::registry::{self, FLUXES, LAYOUTS, Table};
 
 const MINIMAL: &str = r#"
 [mesh]
@@ -34,13 +34,13 @@ fn parse(text: &str, sets: &[&str]) -> Result<Scene> {
 }
 
 /// An entry with its defaults for degree 2.
-fn plain<B>(entries: &'static [Entry<B>], name: &str) -> Chosen<B> {
-    let entry = find(entries, name).unwrap();
+fn plain<B>(entries: &'static Table<B>, name: &str) -> Chosen<B> {
+    let entry = entries.find(name).unwrap();
     Chosen { entry, values: registry::defaults(entry.parameters, 2) }
 }
 
 fn cloud(layout: &str, per_direction: usize) -> Cloud {
-    Cloud { layout: plain(LAYOUTS, layout), per_direction }
+    Cloud { layout: plain(&LAYOUTS, layout), per_direction }
 }
 
 /// The control of the curl and its rate.
@@ -68,7 +68,7 @@ fn defaults() {
         method: Method::AderDgmpm,
         degree: 2,
         time_degree: 2,
-        flux: plain(FLUXES, "dual"),
+        flux: plain(&FLUXES, "dual"),
         step: Step::Safety(0.9),
         sweeps: Sweeps::Ladder,
     };
@@ -156,7 +156,7 @@ fn sets_replace_rivals_and_grow_lists() {
     let scene = parse(MINIMAL, &sets).unwrap();
     assert_eq!(scene.outputs[1].when, When::EverySteps(5));
     let scene = parse(MINIMAL, &["curl.control=off", "cloud={layout=\"gauss\"}"]).unwrap();
-    assert_eq!((control(&scene), scene.cloud.layout), (("off", None), plain(LAYOUTS, "gauss")));
+    assert_eq!((control(&scene), scene.cloud.layout), (("off", None), plain(&LAYOUTS, "gauss")));
     let scene = parse(MINIMAL, &["boundary.1={group=\"right\", kind=\"traction\", value=[0, 1]}"]).unwrap();
     assert_eq!(scene.boundaries[1].condition.name(), "traction");
     assert_eq!(parse(&scene.to_toml(), &[]).unwrap().boundaries, scene.boundaries);
@@ -166,7 +166,7 @@ fn sets_replace_rivals_and_grow_lists() {
     assert_eq!(parse(&scene.to_toml(), &[]).unwrap().boundaries, scene.boundaries);
     let with_table = format!("{MINIMAL}[cloud]\nlayout = \"paper\" # where\n[curl]\ncontrol = \"lcf\"\n");
     let scene = parse(&with_table, &["cloud={layout=\"gauss\"}", "curl.alpha=5"]).unwrap();
-    assert_eq!((control(&scene), scene.cloud.layout), (("lcf", Some(5.0)), plain(LAYOUTS, "gauss")));
+    assert_eq!((control(&scene), scene.cloud.layout), (("lcf", Some(5.0)), plain(&LAYOUTS, "gauss")));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Sources: accelerations b of the momentum balance (2), per unit mass.
 //!
-//! A new source is one file with a type that implements [`Source`] and its entry in the registry of scenes. Without a
+//! A new source is one file with a type that implements [`Source`] and its entry in the registry. Without a
 //! source nothing is evaluated and nothing stored.
 
 use crate::boundary::Data;

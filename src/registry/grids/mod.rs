@@ -13,7 +13,7 @@ pub use files::{Stored, copy};
 pub use fronts::fronts;
 pub use strips::FRONT;
 
-use super::{ANY, CELLS, Entry, FINITE, Form, POSITIVE, Parameter, Preset, Values};
+use super::{ANY, CELLS, Entry, FINITE, Form, POSITIVE, Parameter, Preset, Table, Values};
 use crate::cloud::Cloud;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
@@ -81,7 +81,7 @@ const fn by(make: fn(&Values, &dyn Rule, usize, &Present) -> Result<Mesh>) -> Gr
 const FACTOR: Form = Form::Integer(2, 64);
 
 /// Every kind of new grid.
-pub static GRIDS: &[Entry<Grid>] = &[
+pub static GRIDS: Table<Grid> = Table::new(&[
     Entry {
         name: "mesh",
         about: "a mesh file, or a list of files that are used one after the other",
@@ -151,4 +151,4 @@ pub static GRIDS: &[Entry<Grid>] = &[
         check: ANY,
         build: Grid { files: Some(files::GEOMETRY), check: geometry::check, ..by(geometry::make) },
     },
-];
+]);
