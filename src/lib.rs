@@ -54,6 +54,7 @@
 #[macro_use]
 mod names;
 pub mod error;
+mod format;
 pub mod lane;
 pub mod tensor;
 pub mod quadrature;

@@ -35,15 +35,42 @@ pub trait Picture {
     fn draw<B: DrawingBackend>(&self, area: DrawingArea<B, Shift>) -> std::result::Result<(), String>;
 }
 
+/// The format of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Lines and text.
+    Svg,
+    /// Pixels.
+    Png,
+}
+
+impl Format {
+    /// The format that the ending of a path gives.
+    ///
+    /// # Errors
+    /// Another ending.
+    pub fn of(path: &Path) -> Result<Self> {
+        match path.extension().and_then(|ending| ending.to_str()) {
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            _ => Err(Error::input(
+                format!("the format of the picture {} is not known", path.display()),
+                "give a name that ends in .svg or .png",
+            )),
+        }
+    }
+}
+
 /// Draws a picture into `path`. The ending of the path (`svg`, `png`) gives the format.
 ///
 /// # Errors
-/// There is nothing to draw, or the file cannot be written.
+/// Another ending, nothing to draw, or a file that cannot be written.
 pub fn save<P: Picture>(picture: &P, path: &Path) -> Result<()> {
+    let format = Format::of(path)?;
     fonts();
     let pending = Pending::new(path)?;
     let failed = |why: String| Error::output(path, why);
-    if path.extension().is_some_and(|ending| ending == "svg") {
+    if format == Format::Svg {
         let mut text = String::new();
         picture.draw(SVGBackend::with_string(&mut text, SIZE).into_drawing_area()).map_err(failed)?;
         std::fs::write(pending.path(), text).map_err(|why| Error::output(path, why))?;

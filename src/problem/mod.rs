@@ -17,6 +17,7 @@ mod body;
 mod build;
 pub mod certificates;
 mod cost;
+mod cost_rows;
 mod culprit;
 mod ended;
 mod exact;
@@ -34,6 +35,7 @@ mod points;
 mod rebuild;
 mod solve;
 mod start;
+mod stopped;
 mod store;
 mod summary;
 
@@ -43,10 +45,11 @@ pub use culprit::Culprit;
 pub use ended::Ended;
 pub use export::Export;
 pub use grids::Present;
-pub use input::write_input;
+pub use input::{check_run, write_input};
 pub use points::{Given, Sampled, read_points};
 pub use rebuild::{Moved, Regrids};
 pub use solve::Solve;
+pub use stopped::{Stopped, changes};
 pub use store::{Recent, Store};
 pub use summary::Outcome;
 

@@ -4,6 +4,7 @@ mod folder;
 mod kept;
 mod norms;
 mod report;
+mod rows;
 mod watch;
 
 pub use folder::Folder;

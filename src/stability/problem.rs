@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::mesh::{self, Mesh};
 use crate::problem;
-use crate::scene::{Scene, Step};
+use crate::scene::{self, Scene, Step};
 use crate::state::{State, UNKNOWNS};
 use crate::step::{Method, Scheme, Survey, Work, cfl};
 use std::fmt::Write;
@@ -14,13 +14,14 @@ const SIDES: [&str; 4] = ["left", "right", "bottom", "top"];
 /// The groups of cells of the two materials of a [`Setup`] with contrast.
 const GROUPS: [&str; 2] = ["soft", "stiff"];
 
-/// Which cells of a patch or a body are the stiffer ones, where there are two materials.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pattern {
-    /// Every other cell, by rows and columns.
-    Checkerboard,
-    /// Of a body the right half; of a patch every other column.
-    Halves,
+names! {
+    /// Which cells of a patch or a body are the stiffer ones, where there are two materials.
+    Pattern {
+        /// Every other cell, by rows and columns.
+        Checkerboard = "checkerboard",
+        /// Of a body the right half; of a patch every other column.
+        Halves = "halves",
+    }
 }
 
 /// The body.
@@ -115,6 +116,14 @@ impl Setup {
         let mesh = body.mesh;
         let state = without_displacement(&scheme, scene.initial_state(&mesh, &scheme)?);
         Problem::new(mesh, scheme, state, scene, (unit, units), (courant, known_limit))
+    }
+
+    /// Whether its method has material points.
+    ///
+    /// # Errors
+    /// Bad input, as for a run of the scene.
+    pub(super) fn has_points(&self) -> Result<bool> {
+        Ok(self.scene(&self.sets)?.scheme.method == scene::Method::AderDgmpm)
     }
 
     /// The scene with overrides.

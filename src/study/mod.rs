@@ -11,6 +11,7 @@ mod front;
 mod plot;
 mod predict;
 mod reference;
+mod request;
 mod session;
 mod table;
 mod words;
@@ -21,6 +22,7 @@ pub use front::{Answer, answers, cost, front};
 pub use plot::{Axis, plot};
 pub use predict::{Model, Prediction, Size};
 pub use reference::Reference;
+pub use request::Request;
 pub use session::{Plan, Session};
 pub use table::{COLUMNS, csv, machine, markdown};
 
