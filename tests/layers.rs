@@ -63,23 +63,55 @@ fn used(text: &str) -> BTreeSet<String> {
     names
 }
 
-/// All that a module uses, over the files of its folder.
-fn uses_of_module(name: &str) -> BTreeSet<String> {
+/// The files of a module and of its folder, without tests and comments.
+fn files_of_module(name: &str) -> Vec<(PathBuf, String)> {
     let root = source();
     let mut files = vec![root.join(format!("{name}.rs")), root.join(name).join("mod.rs")];
-    let mut names = BTreeSet::new();
+    let mut found = Vec::new();
     while let Some(file) = files.pop() {
         let Ok(text) = std::fs::read_to_string(&file) else { continue };
         let (text, tests) = without_tests(&text);
-        names.extend(used(&text));
         let stem = file.file_stem().unwrap_or_default();
         let folder = if stem == "mod" { file.parent().unwrap().to_owned() } else { file.with_extension("") };
         let children = text.lines().filter_map(|line| declared(line.trim().trim_start_matches("pub(crate) ")));
         for child in children.filter(|child| !tests.contains(*child)) {
             files.extend([folder.join(format!("{child}.rs")), folder.join(child).join("mod.rs")]);
         }
+        found.push((file, text));
     }
-    names
+    found
+}
+
+/// All that a module uses, over the files of its folder.
+fn uses_of_module(name: &str) -> BTreeSet<String> {
+    files_of_module(name).iter().flat_map(|(_, text)| used(text)).collect()
+}
+
+/// What writes to standard output or standard error; `println!` is in `eprintln!`, and so on.
+const PRINTS: [&str; 5] = ["print!(", "println!(", "dbg!(", "stdout()", "stderr()"];
+
+#[test]
+fn only_the_command_line_writes_to_the_terminal() {
+    let prints = |text: &str| PRINTS.into_iter().find(|word| text.contains(word));
+    let lib = std::fs::read_to_string(source().join("lib.rs")).unwrap();
+    for module in lib.lines().filter_map(declared).filter(|module| *module != "cli") {
+        for (file, text) in files_of_module(module) {
+            assert_eq!(prints(&text), None, "{}: give the words to an observer or return them", file.display());
+        }
+    }
+    // The search works: the program does print.
+    assert!(files_of_module("cli").iter().any(|(_, text)| prints(text).is_some()));
+}
+
+#[test]
+fn a_file_of_the_command_line_has_arguments_one_call_and_words() {
+    let files = files_of_module("cli");
+    assert!(files.len() > 20, "{}", files.len());
+    for (file, _) in files {
+        // The design's figure: what is longer holds method, a plan or a table, which users of the library look for.
+        let lines = std::fs::read_to_string(&file).unwrap().lines().count();
+        assert!(lines <= 60, "{}: {lines} lines", file.display());
+    }
 }
 
 #[test]
