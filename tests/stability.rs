@@ -1,7 +1,10 @@
 //! The linearised step: rates and limits of the design, known faults found, the command line.
 
+mod scenes;
+
 use assert_cmd::Command;
 use dgmpm::stability::{Domain, Measured, Pattern, Questions, Setup, measure};
+use scenes::Body;
 
 const ASKED: Questions = Questions { angles: 12, limit: false, norms: false };
 
@@ -120,11 +123,11 @@ fn a_short_step_grows_as_the_limit_dt_to_zero() {
 #[test]
 fn norms_of_a_patch_are_those_of_its_body() {
     // Walls mirror a wave; a periodic body of 3 x 3 cells is the patch of 3 x 3 angles itself.
-    let text = "[mesh]\nrectangle = { size = [3.0, 3.0], cells = [3, 3] }\n[[material]]\nlaw = \"linear-elastic\"\n\
-         young = 1.0\npoisson = 0.3\ndensity = 1.0\n[[boundary]]\ngroup = \"left\"\nkind = \"periodic\"\npartner = \"right\"\n\
-         [[boundary]]\ngroup = \"bottom\"\nkind = \"periodic\"\npartner = \"top\"\n\
-         [scheme]\nmethod = \"ader-dgfem\"\ndegree = 1\n[time]\nend = 1.0\n";
-    let scene = dgmpm::scene::Scene::parse(text, std::path::Path::new("x.toml"), &[]).unwrap();
+    let body = Body::rectangle([3.0; 2], [3; 2]).material("linear-elastic", [1.0, 0.3, 1.0], "").sides("periodic");
+    let pairs = [("left", "right"), ("right", "left"), ("bottom", "top"), ("top", "bottom")];
+    let periodic = |body: Body, (side, partner)| body.side(side, "periodic", &format!("partner = \"{partner}\""));
+    let body = pairs.into_iter().fold(body, periodic).method("ader-dgfem").degree(1).end(1.0);
+    let scene = body.scene(&[]);
     let asked = Questions { angles: 3, norms: true, ..ASKED };
     let body = measure(&Setup { domain: Domain::Scene(Box::new(scene)), ..patch(&[]) }, asked).unwrap();
     let sets = ["scheme.method=ader-dgfem", "material.0.law=linear-elastic"];
