@@ -111,7 +111,7 @@ impl March {
 
     fn of(body: &Body, sets: &[&str], kernel: Kernel) -> Self {
         let problem = Setup::of(&body.scene(sets)).kernel(kernel).build().unwrap();
-        let (courant, h) = (problem.settings.courant, problem.body.smallest_h());
+        let (courant, h) = (problem.settings.courant, problem.body.mesh.smallest_h());
         let Problem { scheme, state, .. } = problem;
         let mut motion = Motion::unsurveyed(&scheme, state).with_balance(&scheme);
         motion.survey(&scheme).unwrap();

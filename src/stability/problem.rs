@@ -239,8 +239,7 @@ impl Problem {
             let what = format!("the state is no state of the law: {} in cell {}", loss.kind, mesh.number(loss.cell));
             Error::input(what, "give another deformation, or a law that is hyperbolic there")
         })?;
-        let h = crate::mesh::map::h_e;
-        let h = (0..mesh.cells.len()).map(|cell| h(&mesh.corners(cell))).fold(f64::INFINITY, f64::min);
+        let h = mesh.smallest_h();
         let speeds =
             scheme.operators.blocks.slot.iter().map(|&(block, lane)| survey.speed[block].fastest.0[lane]).collect();
         let reference = scheme.laws.iter().map(|law| law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0]);

@@ -223,7 +223,7 @@ pub(super) fn measure(
     let Some((state, report)) = best else { return Ok(Record::failed(case, "no run".into())) };
     let errors = reference.errors(&built, &state);
     let record = Record::new(case, sizes, &report, Some(errors), "done".into());
-    Ok(Record { predicted, h: built.body.smallest_h(), ..record })
+    Ok(Record { predicted, h: built.body.mesh.smallest_h(), ..record })
 }
 
 /// Why a run lost stability, in a few words.
