@@ -1,5 +1,6 @@
 //! All measurements of `make bench`, into CSV, tables and pictures.
 
+use super::series::{AS_MANY, SERIES, SIZES, UNSTRUCTURED};
 use super::summary::{self, Row};
 use super::{Domain, Figures, Flops, Length, Measured, Peaks, Setup, count, measure, peaks};
 use crate::chart::{Chart, Line, Marker, Scale, save};
@@ -7,30 +8,15 @@ use crate::error::Result;
 use crate::io::pending::write_text;
 use crate::io::read_mesh;
 use crate::lane::Kernel;
-use crate::scene::Method;
 use crate::study::machine;
 use std::path::{Path, PathBuf};
 
-/// Sizes, in grid unknowns: near the caches, in memory, and what fills it.
-pub const SIZES: [usize; 3] = [60_000, 900_000, 10_000_000];
 /// Runs of the headline, of which the median stands; of the rest; seconds of a run.
 const RUNS: usize = 5;
 const FEW: usize = 3;
 const SECONDS: f64 = 0.3;
 /// Steps of the largest size.
 const STEPS: usize = 4;
-
-/// A series: method and layout, as the tables and pictures call it.
-pub const SERIES: [(&str, Method, Option<&str>, Marker); 4] = [
-    ("rk-dgfem", Method::RkDgfem, None, Marker::Circle),
-    ("ader-dgfem", Method::AderDgfem, None, Marker::Triangle),
-    ("ader-dgmpm, lattice", Method::AderDgmpm, Some("midpoints"), Marker::Square),
-    ("ader-dgmpm, any cloud", Method::AderDgmpm, Some("jitter"), Marker::Cross),
-];
-
-/// The variants on the unstructured mesh and on squares beside it.
-pub const UNSTRUCTURED: &str = "unstructured";
-pub const AS_MANY: &str = "as many squares";
 
 /// Measurements that are alternated, so that a busy moment of the machine meets all of them.
 struct Batch {

@@ -1,4 +1,4 @@
-use super::campaign::SIZES;
+use super::series::SIZES;
 use super::summary::{self, Row};
 use super::*;
 use crate::basis::TimeBasis;

@@ -1,6 +1,7 @@
 //! Work-precision plots, in logarithms, one line a series: as SVG and as PNG.
 
-use super::case::{Record, Series};
+use super::case::Series;
+use super::record::Record;
 use crate::chart::{COLOURS, FONT, Picture, SIZE, decades, save, square};
 use crate::error::Result;
 use crate::scene::Method;

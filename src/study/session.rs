@@ -1,9 +1,10 @@
 //! A study from its plan to its files.
 
-use super::case::{Case, Record, Series};
+use super::case::{Case, Series};
 use super::choice::{Aim, Choice, ranked};
 use super::front::{answers, front};
 use super::plot::{Axis, plot};
+use super::record::Record;
 use super::reference::Reference;
 use super::table::{csv, machine, markdown};
 use super::words::{answer, line, percent, title};

@@ -1,6 +1,6 @@
 //! What a study says on the terminal.
 
-use super::case::Record;
+use super::record::Record;
 use crate::format::short_seconds;
 
 /// The head of the rows of [`line`].
