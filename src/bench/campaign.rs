@@ -3,7 +3,7 @@
 use super::series::{AS_MANY, SERIES, SIZES, UNSTRUCTURED};
 use super::summary::{self, Row};
 use super::{Domain, Figures, Flops, Length, Measured, Peaks, Setup, count, measure, peaks};
-use crate::chart::{Chart, Line, Marker, Scale, save};
+use crate::chart::{Chart, Line, Marker, Scale, Stroke, save};
 use crate::error::Result;
 use crate::io::pending::write_text;
 use crate::io::read_mesh;
@@ -182,7 +182,7 @@ fn rates(rows: &[Row]) -> Chart {
         let (name, at) = (format!("{name} S{degree}"), (row.figures.measured.dofs as f64, row.figures.measured.rate()));
         match lines.iter_mut().find(|line| line.name == name) {
             Some(line) => line.points.push(at),
-            None => lines.push(Line { name, colour: degree, marker, points: vec![at] }),
+            None => lines.push(Line { name, colour: degree, marker, stroke: Stroke::Full, points: vec![at] }),
         }
     }
     Chart {
@@ -205,13 +205,19 @@ fn roofline(rows: &[Row]) -> Chart {
     let mut lines = Vec::new();
     if !rows.is_empty() {
         let name = "triad, FMA (measured)".to_owned();
-        lines.push(Line { name, colour: 0, marker: Marker::Bare, points: roof });
+        lines.push(Line { name, colour: 0, marker: Marker::Bare, stroke: Stroke::Full, points: roof });
     }
     for row in rows {
         let (name, _, _, marker) = SERIES[row.series];
         let degree = row.figures.setup.degree;
         let at = (row.figures.flops.total() / row.figures.bytes, row.figures.flop_rate());
-        lines.push(Line { name: format!("{name} S{degree}"), colour: degree, marker, points: vec![at] });
+        lines.push(Line {
+            name: format!("{name} S{degree}"),
+            colour: degree,
+            marker,
+            stroke: Stroke::Full,
+            points: vec![at],
+        });
     }
     Chart {
         title: "Roofline of one thread, 9e5 DoF".to_owned(),

@@ -2,7 +2,7 @@
 
 use super::cases::{self, Case, NO_LAYOUT, Plan};
 use super::measure::{Measured, Questions, measure};
-use crate::chart::{Chart, Line, Marker, Scale};
+use crate::chart::{Chart, Line, Marker, Scale, Stroke};
 use crate::error::Result;
 use std::f64::consts::PI;
 
@@ -159,7 +159,13 @@ pub fn chart(rows: &[Row]) -> Result<Chart> {
         let point = (row.case.number(axis).unwrap_or(f64::NAN), row.found.growth);
         match lines.iter_mut().find(|line| line.name == name) {
             Some(line) => line.points.push(point),
-            None => lines.push(Line { name, colour: lines.len() + 1, marker: Marker::Circle, points: vec![point] }),
+            None => lines.push(Line {
+                name,
+                colour: lines.len() + 1,
+                marker: Marker::Circle,
+                stroke: Stroke::Full,
+                points: vec![point],
+            }),
         }
     }
     let all = || cases.iter().filter_map(|case| case.number(axis));
