@@ -73,6 +73,7 @@
 #[macro_use]
 mod names;
 mod error;
+mod format;
 mod lane;
 pub mod tensor;
 mod quadrature;

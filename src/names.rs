@@ -14,6 +14,16 @@ macro_rules! names {
             /// Every variant with its name.
             pub const NAMES: &'static [(&'static str, $type)] = &[$(($name, $type::$variant),)+];
 
+            /// The variant of a name.
+            pub fn named(name: &str) -> Option<Self> {
+                Self::NAMES.iter().find(|(known, _)| *known == name).map(|(_, variant)| *variant)
+            }
+
+            /// All names, for messages: `a, b, c`.
+            pub fn listed() -> String {
+                Self::NAMES.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+            }
+
             /// The name in scenes and results.
             pub fn name(self) -> &'static str {
                 match self {
@@ -23,7 +33,7 @@ macro_rules! names {
         }
 
         impl serde::Serialize for $type {
-            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
                 serializer.serialize_str(self.name())
             }
         }

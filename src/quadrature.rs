@@ -25,28 +25,31 @@ fn root(n: usize, i: usize) -> (f64, f64) {
     let mut x = if middle { 0.0 } else { angle.cos() * (1.0 - (nf - 1.0) / (8.0 * nf * nf * nf)) };
     // Newton is quadratic from Tricomi's value (error O(n^-4)); 3 steps are enough, 10 are a ceiling.
     for _ in 0..10 {
-        let (p, slope) = legendre(n, x);
+        let (p, slope) = of_degree(n, x);
         let step = p / slope;
         if middle || step.abs() < 1e-16 {
             break;
         }
         x -= step;
     }
-    (x, legendre(n, x).1)
+    (x, of_degree(n, x).1)
 }
 
-/// P_n and P_n' at x in (-1, 1), by the three-term recurrences.
-fn legendre(n: usize, x: f64) -> (f64, f64) {
-    let (mut before, mut p) = (0.0, 1.0);
-    let (mut slope_before, mut slope) = (0.0, 0.0);
-    for k in 0..n {
-        let k = k as f64;
-        let next = ((2.0 * k + 1.0) * x * p - k * before) / (k + 1.0);
-        let slope_next = slope_before + (2.0 * k + 1.0) * p;
-        (before, p) = (p, next);
-        (slope_before, slope) = (slope, slope_next);
-    }
-    (p, slope)
+/// P_k and P_k' at x in [-1, 1] for k = 0, 1, .., without end, by the three-term recurrences.
+pub(crate) fn legendre(x: f64) -> impl Iterator<Item = (f64, f64)> {
+    let (mut before, mut now) = ((0.0, 0.0), (1.0, 0.0));
+    (0_u32..).map(move |k| {
+        let (found, k) = (now, f64::from(k));
+        let next = ((2.0 * k + 1.0) * x * now.0 - k * before.0) / (k + 1.0);
+        (before, now) = (now, (next, before.1 + (2.0 * k + 1.0) * now.0));
+        found
+    })
+}
+
+/// P_n and P_n' at x.
+fn of_degree(n: usize, x: f64) -> (f64, f64) {
+    // The list has no end.
+    legendre(x).nth(n).unwrap_or_default()
 }
 
 #[cfg(test)]

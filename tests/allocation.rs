@@ -1,12 +1,13 @@
 //! A step allocates nothing: a counting allocator stands in this program, and a scheme that has done its first steps takes
 //! more with boundaries of every kind, data that depends on time and a source.
 
+mod scenes;
+
 use dgmpm::parts::problem::Problem;
-use dgmpm::parts::scene::Scene;
 use dgmpm::parts::step::{Motion, Scheme};
+use scenes::Body;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard};
 
@@ -50,44 +51,19 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 /// Walls, traction and velocity that depend on place and time, absorbing edges, a source and the displacement.
-const SCENE: &str = r#"
-[mesh]
-rectangle = { size = [1.0, 1.0], cells = [24, 24] }
-[[material]]
-law = "neo-hookean"
-young = 2e11
-poisson = 0.3
-density = 7800.0
-[initial]
-velocity = ["30*sin(pi*x)", "-10*sin(pi*y)"]
-[[boundary]]
-group = "left"
-kind = "wall"
-speed = "5*sin(1e4*t)*(1 + y)"
-[[boundary]]
-group = "right"
-kind = "traction"
-value = ["1e8*sin(2e4*t)", "x*y"]
-[[boundary]]
-group = "bottom"
-kind = "velocity"
-value = ["x*t", "max(0, -t)"]
-[[boundary]]
-group = "top"
-kind = "absorbing"
-[[source]]
-kind = "body-force"
-value = ["100*sin(x + 1e3*t)", "-9.81"]
-[scheme]
-degree = 2
-method = "rk-dgfem"
-[time]
-end = 1.0
-[[output]]
-kind = "fields"
-every = 1.0
-fields = ["displacement"]
-"#;
+fn body() -> Body {
+    Body::square(24)
+        .velocity(["30*sin(pi*x)", "-10*sin(pi*y)"])
+        .side("left", "wall", r#"speed = "5*sin(1e4*t)*(1 + y)""#)
+        .side("right", "traction", r#"value = ["1e8*sin(2e4*t)", "x*y"]"#)
+        .side("bottom", "velocity", r#"value = ["x*t", "max(0, -t)"]"#)
+        .side("top", "absorbing", "")
+        .table("[source]", "kind = \"body-force\"\nvalue = [\"100*sin(x + 1e3*t)\", \"-9.81\"]")
+        .method("rk-dgfem")
+        .degree(2)
+        .end(1.0)
+        .table("[output]", "kind = \"fields\"\nevery = 1.0\nfields = [\"displacement\"]")
+}
 
 struct Run {
     scheme: Scheme,
@@ -98,9 +74,7 @@ struct Run {
 impl Run {
     /// A scheme that has done some steps on the threads of the current pool.
     fn warm(sets: &[&str]) -> Self {
-        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
-        let scene = Scene::parse(SCENE, Path::new("allocation.toml"), &sets).unwrap();
-        let Problem { scheme, state, settings, .. } = Problem::new(&scene).unwrap();
+        let Problem { scheme, state, settings, .. } = body().problem(sets);
         assert!(state.has_displacement() && !scheme.sources.is_empty());
         let motion = Motion::new(&scheme, state).unwrap();
         let dt = 0.5 * settings.courant / 24.0 / motion.survey.fastest;

@@ -1,8 +1,10 @@
 //! Scenes in which the steps once made energy or lost much of it, small, with the default flux and curl control.
 
 mod runs;
+mod scenes;
 
 use runs::{Outcome, range, run};
+use scenes::{Body, NOISE, STEEL};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -11,39 +13,22 @@ const METHODS: [&str; 3] = ["ader-dgmpm", "ader-dgfem", "rk-dgfem"];
 const NO_GAIN: f64 = 1.0 + 1e-6;
 /// Its figure with plastic flow, where strain energy and plastic work are told apart to the tolerance of the law; measured 1.
 const NO_PLASTIC_GAIN: f64 = 1.0 + 1e-3;
-const NOISE: &str = "velocity = [\"5e-3*sin(43758.5*sin(17*x+53*y+0.3))\", \"5e-3*sin(43758.5*sin(31*x+47*y+0.7))\"]";
-const SHEAR: &str = "velocity = [\"5*sin(pi*x)*cos(pi*y)\", \"-5*cos(pi*x)*sin(pi*y)\"]";
-const FREE: &str = "kind = \"free\"";
-const SIDES: [&str; 4] = ["left", "right", "bottom", "top"];
+const SHEAR: [&str; 2] = ["5*sin(pi*x)*cos(pi*y)", "-5*cos(pi*x)*sin(pi*y)"];
 
 fn folder() -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("energy_cases");
+    let folder = scenes::folder("energy_cases");
     std::fs::create_dir_all(&folder).unwrap();
     folder
 }
 
-fn material(law: &str, [young, poisson, density]: [f64; 3], more: &str) -> String {
-    format!("[[material]]\nlaw = \"{law}\"\nyoung = {young:e}\npoisson = {poisson}\ndensity = {density}\n{more}\n")
+/// The scene of a body by degree 2, with a ledger, all else default.
+fn scene(name: &str, body: Body) -> PathBuf {
+    body.degree(2).ledger(5).write(&folder(), name)
 }
 
-/// A scene with a ledger, all else default; conditions of the left, right, bottom and top edge.
-fn scene(name: &str, mesh: &str, materials: &str, conditions: &[(&str, &str)], more: &str) -> PathBuf {
-    let boundary: String = conditions.iter().fold(String::new(), |mut text, (group, condition)| {
-        write!(text, "[[boundary]]\ngroup = \"{group}\"\n{condition}\n").unwrap();
-        text
-    });
-    let path = folder().join(format!("{name}.toml"));
-    let ledger = "[[output]]\nkind = \"ledger\"\nevery_steps = 5";
-    std::fs::write(&path, format!("[mesh]\n{mesh}\n{materials}{boundary}{more}\n{ledger}\n")).unwrap();
-    path
-}
-
-fn rectangle(size: [f64; 2], cells: [usize; 2]) -> String {
-    format!("rectangle = {{ size = {size:?}, cells = {cells:?} }}")
-}
-
-fn all_free() -> [(&'static str, &'static str); 4] {
-    SIDES.map(|side| (side, FREE))
+/// Rubber by E, nu and rho0.
+fn rubber(size: [f64; 2], cells: [usize; 2], numbers: [f64; 3]) -> Body {
+    Body::rectangle(size, cells).material("neo-hookean", numbers, "")
 }
 
 fn of(scene: &Path, method: &str, degree: usize, sets: &[&str]) -> Outcome {
@@ -62,10 +47,8 @@ fn accounted(outcome: &Outcome, plastic: bool) -> [f64; 2] {
 }
 
 fn strip(test: &str, law: &str, poisson: f64, thick: usize) -> PathBuf {
-    let more = format!("[initial]\n{NOISE}\n[scheme]\ndegree = 2\n[time]\nend = 1e-2");
-    let name = format!("strip_{test}_{law}_{poisson}_{thick}");
-    let mesh = rectangle([12.0, thick as f64], [12, thick]);
-    scene(&name, &mesh, &material(law, [2e11, poisson, 7800.0], ""), &all_free(), &more)
+    let body = Body::rectangle([12.0, thick as f64], [12, thick]).material(law, [2e11, poisson, 7800.0], "");
+    scene(&format!("strip_{test}_{law}_{poisson}_{thick}"), body.velocity(NOISE).end(1e-2))
 }
 
 /// The largest energy, that in the middle and that at the end over the start, after of 88 h/c and more: what grows by .02 c/h, as the slowest of LCF's modes
@@ -107,9 +90,8 @@ fn noise_in_the_free_strip_grows_under_lcf() {
 
 #[test]
 fn a_nearly_incompressible_square_let_go_never_gains_energy() {
-    let more = "[initial]\nvelocity = [\"sin(pi*x)*cos(pi*y)\", \"-cos(pi*x)*sin(pi*y)\"]\n[scheme]\ndegree = 2\n[time]\nend = 2e-2";
-    let rubber = material("neo-hookean", [17e6, 0.4999, 1100.0], "");
-    let scene = scene("rubber", &rectangle([1.0; 2], [4; 2]), &rubber, &all_free(), more);
+    let square = rubber([1.0; 2], [4; 2], [17e6, 0.4999, 1100.0]);
+    let scene = scene("rubber", square.velocity(["sin(pi*x)*cos(pi*y)", "-cos(pi*x)*sin(pi*y)"]).end(2e-2));
     let [most, last] = accounted(&of(&scene, "ader-dgmpm", 2, &[]), false);
     println!("rubber: {most:.9}, end {last:.4}");
     // Measured .882 at the end (with what the faces hold, which is not counted), after two periods of the first mode on 4 x 4 cells.
@@ -122,18 +104,14 @@ fn a_nearly_incompressible_square_let_go_never_gains_energy() {
 fn a_cantilever_one_cell_thick_keeps_its_energy_and_its_period() {
     for (poisson, period) in [(0.3, 0.477980), (0.49, 0.434255)] {
         let shape = "0.1*((cosh(1.8751*x)-cos(1.8751*x)) - 0.7341*(sinh(1.8751*x)-sin(1.8751*x)))";
-        let more = format!(
-            "[initial]\nvelocity = [\"0\", \"{shape}\"]\n[scheme]\ndegree = 2\n[time]\nend = {}\n[[output]]\n\
-             kind = \"line\"\nname = \"tip\"\nfrom = [1.0, 0.05]\nto = [1.0, 0.1]\nsamples = 2\nevery = {}\n\
+        let tip = format!(
+            "kind = \"line\"\nname = \"tip\"\nfrom = [1.0, 0.05]\nto = [1.0, 0.1]\nsamples = 2\nevery = {}\n\
              fields = [\"displacement\"]",
-            1.3 * period,
             period / 100.0
         );
-        let mut edges = all_free();
-        edges[0].1 = "kind = \"clamped\"";
-        let name = format!("cantilever_{poisson}");
-        let rubber = material("neo-hookean", [17e6, poisson, 1100.0], "");
-        let scene = scene(&name, &rectangle([1.0, 0.1], [10, 1]), &rubber, &edges, &more);
+        let body = rubber([1.0, 0.1], [10, 1], [17e6, poisson, 1100.0]).side("left", "clamped", "");
+        let body = body.velocity(["0", shape]).end(1.3 * period).table("[output]", &tip);
+        let scene = scene(&format!("cantilever_{poisson}"), body);
         let outcome = of(&scene, "ader-dgmpm", 2, &[]);
         let [most, last] = accounted(&outcome, false);
         let tip = runs::Table::read(&outcome.path().join("lines/tip.csv"));
@@ -181,13 +159,12 @@ fn two_materials(checkerboard: bool) -> PathBuf {
 #[test]
 fn between_materials_of_any_contrast_energy_falls_at_rest_and_in_motion() {
     for checkerboard in [false, true] {
-        let mesh = format!("file = {:?}", two_materials(checkerboard));
+        let mesh = two_materials(checkerboard);
         for (contrast, start) in [(1e4, NOISE), (1e6, NOISE), (1e4, SHEAR), (1e6, SHEAR)] {
-            let [soft, hard] = [("soft", 2e11 / contrast), ("hard", 2e11)]
-                .map(|(group, young)| material("neo-hookean", [young, 0.3, 7800.0], &format!("group = \"{group}\"")));
-            let more = format!("[initial]\n{start}\n[scheme]\ndegree = 2\n[time]\nend = 2e-3");
+            let body = Body::of_file(&mesh).sides("free").velocity(start).end(2e-3);
+            let body = body.material("neo-hookean", [2e11 / contrast, 0.3, 7800.0], "group = \"soft\"");
             let name = format!("contrast_{contrast:e}_{checkerboard}_{}", start == NOISE);
-            let scene = scene(&name, &mesh, &(soft + &hard), &all_free(), &more);
+            let scene = scene(&name, body.material("neo-hookean", STEEL, "group = \"hard\""));
             let [most, last] = accounted(&of(&scene, "ader-dgmpm", 2, &[]), false);
             println!("{name}: {most:.9}, end {last:.4}");
             assert!(most <= NO_GAIN && last < 1.0, "{name}: {most} {last}");
@@ -200,13 +177,12 @@ fn between_materials_of_any_contrast_energy_falls_at_rest_and_in_motion() {
 #[test]
 fn a_bracket_under_a_load_has_the_energies_of_finite_elements() {
     let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/bracket.msh");
-    let [steel, aluminium] = ["steel", "aluminium"]
-        .map(|group| material("neo-hookean", [2.1e11, 0.3, 7850.0], &format!("group = \"{group}\"")));
-    let load = "kind = \"traction\"\nvalue = [\"0\", \
+    let load = "value = [\"0\", \
                 \"(y>0.0399)*(x>0.075)*(x<0.115)*(-2e7)*min(t/1e-5,1)*sin(pi*(x-0.075)/0.04)^2\"]";
-    let edges = [("back", "kind = \"clamped\""), ("hole", FREE), ("rest", load)];
-    let more = "[scheme]\ndegree = 2\n[time]\nend = 2e-4";
-    let scene = scene("bracket", &format!("file = {mesh:?}"), &(steel + &aluminium), &edges, more);
+    let body = Body::of_file(&mesh).side("back", "clamped", "").side("hole", "free", "").side("rest", "traction", load);
+    let of_group =
+        |body: Body, group| body.material("neo-hookean", [2.1e11, 0.3, 7850.0], &format!("group = \"{group}\""));
+    let scene = scene("bracket", ["steel", "aluminium"].into_iter().fold(body, of_group).end(2e-4));
     let outcome = of(&scene, "ader-dgmpm", 2, &["output.0.every_steps=100"]);
     let work = outcome.summary["balance"]["boundary_work"].as_f64().unwrap();
     let [kinetic, strain] = ["kinetic_energy", "strain_energy"].map(|key| outcome.number(key));
@@ -224,16 +200,14 @@ fn a_bracket_under_a_load_has_the_energies_of_finite_elements() {
 
 #[test]
 fn perfect_plasticity_never_gains_energy_on_the_papers_points_and_on_gauss_nodes() {
-    let law = |numbers, yields: f64| material("j2", numbers, &format!("yield_stress = {yields:e}\nhardening = 0.0"));
-    let vortex = "[initial]\nvelocity = [\"20*sin(pi*x)*cos(pi*y)\", \"-20*cos(pi*x)*sin(pi*y)\"]\n[time]\nend = 5e-3";
-    let bar = "[initial]\nvelocity = [\"-150\", \"0\"]\n[time]\nend = 2e-3";
-    let (steel, aluminium) = (law([2e11, 0.3, 7800.0], 1e7), law([7.4174e10, 0.34366, 2785.0], 3e8));
-    let (wall, symmetry) = ("kind = \"wall\"", "kind = \"symmetry\"");
-    let edges = [("left", wall), ("right", FREE), ("bottom", symmetry), ("top", FREE)];
-    let scheme = |more: &str| format!("{more}\n[scheme]\ndegree = 2");
+    let plastic = |body: Body, numbers, yields: f64| {
+        body.material("j2", numbers, &format!("yield_stress = {yields:e}\nhardening = 0.0"))
+    };
+    let vortex = Body::square(8).velocity(["20*sin(pi*x)*cos(pi*y)", "-20*cos(pi*x)*sin(pi*y)"]).end(5e-3);
+    let bar = Body::rectangle([5.0, 0.5], [20, 2]).side("left", "wall", "").side("bottom", "symmetry", "");
     let scenes = [
-        scene("vortex", &rectangle([1.0; 2], [8; 2]), &steel, &all_free(), &scheme(vortex)),
-        scene("bar", &rectangle([5.0, 0.5], [20, 2]), &aluminium, &edges, &scheme(bar)),
+        scene("vortex", plastic(vortex, STEEL, 1e7)),
+        scene("bar", plastic(bar, [7.4174e10, 0.34366, 2785.0], 3e8).velocity(["-150", "0"]).end(2e-3)),
     ];
     for scene in scenes {
         for layout in ["paper", "gauss"] {
@@ -247,11 +221,9 @@ fn perfect_plasticity_never_gains_energy_on_the_papers_points_and_on_gauss_nodes
 
 #[test]
 fn a_clamped_beam_bends_under_its_weight_with_less_energy_than_work() {
-    let more = "[[source]]\nkind = \"gravity\"\nvalue = [\"0\", \"-2\"]\n[scheme]\ndegree = 3\n[time]\nend = 0.1";
-    let mut edges = all_free();
-    edges[0].1 = "kind = \"clamped\"";
-    let rubber = material("neo-hookean", [1.4e6, 0.4, 1000.0], "");
-    let scene = scene("bending", &rectangle([0.35, 0.02], [9, 1]), &rubber, &edges, more);
+    let beam = rubber([0.35, 0.02], [9, 1], [1.4e6, 0.4, 1000.0]).side("left", "clamped", "");
+    let weight = "kind = \"gravity\"\nvalue = [\"0\", \"-2\"]";
+    let scene = scene("bending", beam.table("[source]", weight).end(0.1));
     for method in &METHODS[..1] {
         let outcome = of(&scene, method, 3, &["output.0.every_steps=50"]);
         let ledger = outcome.ledger();
@@ -271,10 +243,8 @@ fn a_clamped_beam_bends_under_its_weight_with_less_energy_than_work() {
 #[test]
 fn a_spinning_frame_keeps_its_energy() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/spinning_frame.msh");
-    let more = "[initial]\nvelocity = [\"-300*(y-0.5)\", \"300*(x-0.5)\"]\n[scheme]\ndegree = 2\n[time]\nend = 6e-3";
-    let mesh = format!("file = \"{}\"", data.display());
-    let steel = material("neo-hookean", [2e11, 0.3, 7800.0], "");
-    let scene = scene("frame", &mesh, &steel, &[("edge", FREE)], more);
+    let frame = Body::of_file(&data).side("edge", "free", "").velocity(["-300*(y-0.5)", "300*(x-0.5)"]);
+    let scene = scene("frame", frame.end(6e-3));
     for (method, degree, least) in [("ader-dgmpm", 1, 0.995), ("ader-dgmpm", 2, 0.999), ("rk-dgfem", 2, 0.999)] {
         let outcome = of(&scene, method, degree, &[]);
         let [most, last] = accounted(&outcome, false);
@@ -287,11 +257,8 @@ fn a_spinning_frame_keeps_its_energy() {
 #[test]
 fn large_bending_makes_no_energy_at_degree_1() {
     let shape = "40*(0.1*((cosh(1.8751*x)-cos(1.8751*x)) - 0.7341*(sinh(1.8751*x)-sin(1.8751*x))))";
-    let more = format!("[initial]\nvelocity = [\"0\", \"{shape}\"]\n[scheme]\ndegree = 1\n[time]\nend = 0.4");
-    let mut edges = all_free();
-    edges[0].1 = "kind = \"clamped\"";
-    let rubber = material("neo-hookean", [17e6, 0.3, 1100.0], "");
-    let scene = scene("bending_1", &rectangle([1.0, 0.1], [40, 2]), &rubber, &edges, &more);
+    let beam = rubber([1.0, 0.1], [40, 2], [17e6, 0.3, 1100.0]).side("left", "clamped", "");
+    let scene = scene("bending_1", beam.velocity(["0", shape]).end(0.4));
     let [most, last] = accounted(&of(&scene, "ader-dgmpm", 1, &[]), false);
     println!("bending S1: {most:.9}, {last:.5}");
     assert!(most <= NO_GAIN && last > 0.95, "{most} {last}");
@@ -300,17 +267,13 @@ fn large_bending_makes_no_energy_at_degree_1() {
 /// ADER S2 on cells 16 times as long as they are high, and under a compression of .75: noise grew at the default step with theta = .5.
 #[test]
 fn degree_2_holds_on_flat_cells_and_under_compression() {
-    let steel = material("neo-hookean", [2e11, 0.3, 7800.0], "");
-    let more = format!("[initial]\n{NOISE}\n[scheme]\ndegree = 2\n[time]\nend = 5e-3");
-    let flat = scene("flat", &rectangle([12.0, 1.0], [3, 4]), &steel, &all_free(), &more);
+    let flat = scene("flat", Body::rectangle([12.0, 1.0], [3, 4]).velocity(NOISE).end(5e-3));
     let [most, last] = accounted(&of(&flat, "ader-dgmpm", 2, &[]), false);
     println!("flat: {most:.9}, {last:.4}");
     // Measured .065 at the end.
     assert!(most <= NO_GAIN && last < 0.5, "{most} {last}");
-    let more =
-        format!("[initial]\n{NOISE}\ndeformation = [0.75, 0, 0, 0.75]\n[scheme]\ndegree = 2\n[time]\nend = 5e-3");
-    let walls = SIDES.map(|side| (side, "kind = \"wall\""));
-    let pressed = scene("pressed", &rectangle([1.0; 2], [6; 2]), &steel, &walls, &more);
+    let start = format!("velocity = {NOISE:?}\ndeformation = [0.75, 0, 0, 0.75]");
+    let pressed = scene("pressed", Body::square(6).sides("wall").initial(&start).end(5e-3));
     let [most, _] = accounted(&of(&pressed, "ader-dgmpm", 2, &[]), false);
     println!("pressed: {most:.9}");
     assert!(most <= NO_GAIN, "{most}");

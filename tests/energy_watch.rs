@@ -1,42 +1,26 @@
 //! The watch over the energy as a user meets it: a body that makes energy is warned of and stopped, others are left alone.
 
 mod runs;
+mod scenes;
 
 use runs::{Outcome, run};
+use scenes::{Body, NOISE};
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-fn file(name: &str, text: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("energy_watch");
-    std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join(format!("{name}.toml"));
-    std::fs::write(&path, text).unwrap();
-    path
+/// A free square of steel, ADER-DGMPM S2.
+fn square() -> Body {
+    Body::square(4).method("ader-dgmpm").degree(2)
 }
 
-/// A square of steel, free but for what `more` says of its left and right end.
-fn square(name: &str, left: &str, right: &str, more: &str) -> PathBuf {
-    let groups = [("left", left), ("right", right), ("bottom", "kind = \"free\""), ("top", "kind = \"free\"")];
-    let boundary: String =
-        groups.iter().map(|(group, kind)| format!("[[boundary]]\ngroup = \"{group}\"\n{kind}\n")).collect();
-    let text = format!(
-        "[mesh]\nrectangle = {{ size = [1.0, 1.0], cells = [4, 4] }}\n[[material]]\nlaw = \"neo-hookean\"\nyoung = 2e11\n\
-         poisson = 0.3\ndensity = 7800.0\n{boundary}[scheme]\nmethod = \"ader-dgmpm\"\ndegree = 2\n{more}"
-    );
-    file(name, &text)
+fn write(name: &str, body: &Body) -> PathBuf {
+    body.write(&scenes::folder("energy_watch"), name)
 }
 
 /// A free strip one cell thick with noise: the projection `lcf` makes energy there (design of the control of the curl).
 fn strip() -> PathBuf {
-    let edge = |group: &str| format!("[[boundary]]\ngroup = \"{group}\"\nkind = \"free\"\n");
-    let boundary: String = ["left", "right", "bottom", "top"].map(edge).concat();
-    let text = format!(
-        "[mesh]\nrectangle = {{ size = [12.0, 1.0], cells = [12, 1] }}\n[[material]]\nlaw = \"neo-hookean\"\nyoung = 2e11\n\
-         poisson = 0.3\ndensity = 7800.0\n[initial]\nvelocity = [\"5e-3*sin(43758.5*sin(17*x+53*y+0.3))\", \
-         \"5e-3*sin(43758.5*sin(31*x+47*y+0.7))\"]\n{boundary}[scheme]\nmethod = \"ader-dgmpm\"\ndegree = 2\n\
-         flux = \"rusanov\"\n[curl]\ncontrol = \"lcf\"\n[time]\nend = 0.05\n"
-    );
-    file("strip", &text)
+    let strip = Body::rectangle([12.0, 1.0], [12, 1]).velocity(NOISE).method("ader-dgmpm").degree(2);
+    write("strip", &strip.scheme("flux", "\"rusanov\"").table("curl", "control = \"lcf\"").end(0.05))
 }
 
 /// The program as it is, with its exit code.
@@ -101,15 +85,13 @@ fn made(outcome: &Outcome) -> f64 {
 /// Measured: no rise at all; ratios .785 (a pulse of traction, S1) to .9987.
 #[test]
 fn bodies_that_are_moved_from_outside_raise_no_alarm_and_have_no_more_energy_than_they_were_given() {
-    let clamped = "kind = \"clamped\"";
-    let traction = "kind = \"traction\"\nvalue = [\"1e7*sin(pi*min(t/1e-4,1))\", \"2e6\"]";
-    let wall = "kind = \"wall\"\nspeed = \"2*sin(2e4*t)\"";
-    let gravity = "[[source]]\nkind = \"gravity\"\nvalue = [\"1e3\", \"-1e4\"]\n";
-    let end = "[time]\nend = 6e-4\n";
+    let clamped = square().side("left", "clamped", "").end(6e-4);
+    let traction = r#"value = ["1e7*sin(pi*min(t/1e-4,1))", "2e6"]"#;
+    let gravity = "kind = \"gravity\"\nvalue = [\"1e3\", \"-1e4\"]";
     let scenes = [
-        square("traction", clamped, traction, end),
-        square("gravity", clamped, "kind = \"free\"", &format!("{gravity}{end}")),
-        square("wall", clamped, wall, end),
+        write("traction", &clamped.clone().side("right", "traction", traction)),
+        write("gravity", &clamped.clone().table("[source]", gravity)),
+        write("wall", &clamped.side("right", "wall", r#"speed = "2*sin(2e4*t)""#)),
     ];
     for (scene, method) in scenes.iter().flat_map(|scene| METHODS.map(|method| (scene, method))) {
         for degree in 1..=3 {
@@ -126,8 +108,9 @@ fn bodies_that_are_moved_from_outside_raise_no_alarm_and_have_no_more_energy_tha
 /// Work is the same to the bit with and without the balance.
 #[test]
 fn work_is_metered_in_every_run() {
-    let more = "[[source]]\nkind = \"gravity\"\nvalue = [\"0\", \"-1e6\"]\n[time]\nend = 1e-4\n";
-    let scene = square("metered", "kind = \"clamped\"", "kind = \"traction\"\nvalue = [\"1e8\", \"0\"]", more);
+    let loaded = square().side("left", "clamped", "").side("right", "traction", r#"value = ["1e8", "0"]"#);
+    let falling = loaded.table("[source]", "kind = \"gravity\"\nvalue = [\"0\", \"-1e6\"]");
+    let scene = write("metered", &falling.end(1e-4));
     for method in METHODS {
         let method = format!("scheme.method={method}");
         let of = |sets: &[&str]| {
@@ -143,11 +126,10 @@ fn work_is_metered_in_every_run() {
 /// Energy that a regrid adds or takes is booked apart, and a run from a snapshot begins its books anew.
 #[test]
 fn books_go_on_over_a_regrid_and_begin_anew_at_a_restart() {
-    let more = "[initial]\nvelocity = [\"100*sin(3*x)\", \"-50*y\"]\n[time]\nend = 2e-4\n[[output]]\nkind = \"fields\"\n\
-                at = [1e-4]\n[[regrid]]\nat = [5e-5, 1.5e-4]\nrectangles = [{ size = [1.0, 1.0], cells = [3, 5] }, \
-                { size = [1.0, 1.0], cells = [5, 4] }]\n[[output]]\nkind = \"ledger\"\n";
-    let free = "kind = \"free\"";
-    let scene = square("regrid", free, free, more);
+    let grids = "at = [5e-5, 1.5e-4]\nrectangles = [{ size = [1.0, 1.0], cells = [3, 5] }, { size = [1.0, 1.0], cells = [5, 4] }]";
+    let body = square().velocity(["100*sin(3*x)", "-50*y"]).end(2e-4).table("[regrid]", grids);
+    let body = body.table("[output]", "kind = \"fields\"\nat = [1e-4]").table("[output]", "kind = \"ledger\"");
+    let scene = write("regrid", &body);
     for method in METHODS {
         let outcome = run(scene.to_str().unwrap(), &[&format!("scheme.method={method}")]);
         let balance = &outcome.summary["balance"];

@@ -59,10 +59,9 @@ fn cloud_comes_back_for_its_mesh_only() {
     let mut mesh = io_samples::mesh();
     let cloud = io_samples::cloud(&mesh);
     cloud_file::write_cloud(&path, &cloud, &mesh).unwrap();
-    assert_eq!(cloud_file::read_cloud(&path).unwrap(), (cloud.clone(), hash::of_mesh(&mesh)));
-    assert_eq!(cloud_file::read_cloud_of(&path, &mesh).unwrap(), cloud);
+    assert_eq!(cloud_file::read_with(&path, &mesh).unwrap().0, cloud);
     mesh.nodes[0][0] = -f64::EPSILON;
-    assert!(message(cloud_file::read_cloud_of(&path, &mesh), &path).contains("another mesh"));
+    assert!(message(cloud_file::read_with(&path, &mesh), &path).contains("another mesh"));
 }
 
 #[test]
@@ -185,7 +184,7 @@ fn other_files_are_refused_by_name() {
     fs::write(at("empty.h5"), "").unwrap();
     for name in ["text.h5", "empty.h5", "absent.h5", "."] {
         message(mesh_file::read_mesh(&at(name)), &at(name));
-        message(cloud_file::read_cloud(&at(name)), &at(name));
+        message(cloud_file::read_with(&at(name), &mesh), &at(name));
         message(Snapshot::read(&at(name)), &at(name));
     }
 }
@@ -294,7 +293,7 @@ proptest! {
         fs::write(&path, &whole[..length]).unwrap();
         let read = match which {
             0 => mesh_file::read_mesh(&path).map(|read| assert_eq!(read, mesh)),
-            1 => cloud_file::read_cloud(&path).map(|read| assert_eq!(read.0, cloud)),
+            1 => cloud_file::read_with(&path, &mesh).map(|read| assert_eq!(read.0, cloud)),
             _ => Snapshot::read(&path).map(|read| assert_eq!(bits(&read.u), bits(&io_samples::snapshot(2).u))),
         };
         // Behind the last byte of HDF5 stands only the seal.

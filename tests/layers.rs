@@ -63,23 +63,55 @@ fn used(text: &str) -> BTreeSet<String> {
     names
 }
 
-/// All that a module uses, over the files of its folder.
-fn uses_of_module(name: &str) -> BTreeSet<String> {
+/// The files of a module and of its folder, without tests and comments.
+fn files_of_module(name: &str) -> Vec<(PathBuf, String)> {
     let root = source();
     let mut files = vec![root.join(format!("{name}.rs")), root.join(name).join("mod.rs")];
-    let mut names = BTreeSet::new();
+    let mut found = Vec::new();
     while let Some(file) = files.pop() {
         let Ok(text) = std::fs::read_to_string(&file) else { continue };
         let (text, tests) = without_tests(&text);
-        names.extend(used(&text));
         let stem = file.file_stem().unwrap_or_default();
         let folder = if stem == "mod" { file.parent().unwrap().to_owned() } else { file.with_extension("") };
         let children = text.lines().filter_map(|line| declared(line.trim().trim_start_matches("pub(crate) ")));
         for child in children.filter(|child| !tests.contains(*child)) {
             files.extend([folder.join(format!("{child}.rs")), folder.join(child).join("mod.rs")]);
         }
+        found.push((file, text));
     }
-    names
+    found
+}
+
+/// All that a module uses, over the files of its folder.
+fn uses_of_module(name: &str) -> BTreeSet<String> {
+    files_of_module(name).iter().flat_map(|(_, text)| used(text)).collect()
+}
+
+/// What writes to standard output or standard error; `println!` is in `eprintln!`, and so on.
+const PRINTS: [&str; 5] = ["print!(", "println!(", "dbg!(", "stdout()", "stderr()"];
+
+#[test]
+fn only_the_command_line_writes_to_the_terminal() {
+    let prints = |text: &str| PRINTS.into_iter().find(|word| text.contains(word));
+    let lib = std::fs::read_to_string(source().join("lib.rs")).unwrap();
+    for module in lib.lines().filter_map(declared).filter(|module| *module != "cli") {
+        for (file, text) in files_of_module(module) {
+            assert_eq!(prints(&text), None, "{}: give the words to an observer or return them", file.display());
+        }
+    }
+    // The search works: the program does print.
+    assert!(files_of_module("cli").iter().any(|(_, text)| prints(text).is_some()));
+}
+
+#[test]
+fn a_file_of_the_command_line_has_arguments_one_call_and_words() {
+    let files = files_of_module("cli");
+    assert!(files.len() > 20, "{}", files.len());
+    for (file, _) in files {
+        // The design's figure: what is longer holds method, a plan or a table, which users of the library look for.
+        let lines = std::fs::read_to_string(&file).unwrap().lines().count();
+        assert!(lines <= 60, "{}: {lines} lines", file.display());
+    }
 }
 
 #[test]
@@ -112,32 +144,49 @@ fn neighbours_used(text: &str, files: &BTreeSet<String>) -> BTreeSet<String> {
         .collect()
 }
 
-#[test]
-fn no_files_of_the_step_are_in_a_circle() {
-    let folder = source().join("step");
-    let text = std::fs::read_to_string(folder.join("mod.rs")).unwrap();
+/// Files of a folder of the source, each with its neighbours that it uses; without tests.
+fn neighbours(folder: &Path) -> Vec<(String, BTreeSet<String>)> {
+    let own = [folder.join("mod.rs"), folder.with_extension("rs")];
+    let text = own.iter().find_map(|path| std::fs::read_to_string(path).ok()).unwrap();
     let (text, tests) = without_tests(&text);
     let names = text.lines().filter_map(|line| declared(line.trim()));
     let files: BTreeSet<String> = names.filter(|name| !tests.contains(*name)).map(str::to_owned).collect();
-    assert!(files.len() > 20, "{files:?}");
-    let mut uses: Vec<(String, BTreeSet<String>)> = Vec::new();
-    for file in &files {
-        let mut all = BTreeSet::new();
-        for path in [folder.join(format!("{file}.rs")), folder.join(file).join("mod.rs")] {
-            let Ok(text) = std::fs::read_to_string(path) else { continue };
-            all.extend(neighbours_used(&without_tests(&text).0, &files));
-        }
-        uses.push((file.clone(), all));
-    }
-    assert!(uses.iter().map(|(_, all)| all.len()).sum::<usize>() > files.len(), "the search finds uses");
-    // What uses nothing that is left goes, until nothing goes any more: what is left then is in a circle or uses one.
+    let uses = |file: &String| {
+        let paths = [folder.join(format!("{file}.rs")), folder.join(file).join("mod.rs")];
+        let texts = paths.iter().filter_map(|path| std::fs::read_to_string(path).ok());
+        texts.flat_map(|text| neighbours_used(&without_tests(&text).0, &files)).collect()
+    };
+    files.iter().map(|file| (file.clone(), uses(file))).collect()
+}
+
+/// What is in a circle or uses one: what uses nothing that is left goes, until nothing goes any more.
+fn in_circles(mut uses: Vec<(String, BTreeSet<String>)>) -> Vec<(String, BTreeSet<String>)> {
     let mut left = uses.len() + 1;
     while uses.len() < left {
         left = uses.len();
         let names: BTreeSet<String> = uses.iter().map(|(file, _)| file.clone()).collect();
         uses.retain(|(_, all)| all.intersection(&names).next().is_some());
     }
-    assert!(uses.is_empty(), "in a circle, or using one: {uses:#?}");
+    uses
+}
+
+#[test]
+fn no_files_of_a_folder_are_in_a_circle() {
+    let mut found = 0;
+    for entry in std::fs::read_dir(source()).unwrap() {
+        let folder = entry.unwrap().path();
+        // The tables [[output]] and [[regrid]] have keys in common, which each reads from the other.
+        if !folder.is_dir() || folder.ends_with("scene") {
+            continue;
+        }
+        let uses = neighbours(&folder);
+        found += uses.iter().map(|(_, all)| all.len()).sum::<usize>();
+        let circles = in_circles(uses);
+        assert!(circles.is_empty(), "{}: in a circle, or using one: {circles:#?}", folder.display());
+    }
+    assert!(found > 100, "the search finds uses: {found}");
+    let pair = |name: &str, used: &str| (name.to_owned(), BTreeSet::from([used.to_owned()]));
+    assert_eq!(in_circles(vec![pair("a", "b"), pair("b", "c"), pair("c", "b"), pair("d", "e")]).len(), 3);
 }
 
 /// A scene is data: text that is checked against the tables of the registry.

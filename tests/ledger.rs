@@ -1,26 +1,17 @@
 //! The balance of energy as a user finds it: `ledger.csv` and `summary.json` of whole runs.
 
 mod runs;
+mod scenes;
 
 use runs::{Outcome, run};
+use scenes::{Body, STEEL};
 use std::path::PathBuf;
 
 const METHODS: [&str; 3] = ["ader-dgmpm", "ader-dgfem", "rk-dgfem"];
 
-/// A scene of the unit square, or of `mesh`, with what differs; the ledger has a row for each step.
-fn scene(name: &str, law: &str, mesh: &str, conditions: [&str; 4], more: &str) -> PathBuf {
-    let groups = ["left", "right", "bottom", "top"];
-    let condition = |(group, condition): (&&str, &str)| format!("[[boundary]]\ngroup = \"{group}\"\n{condition}\n");
-    let boundary: String = groups.iter().zip(conditions).map(condition).collect();
-    let text = format!(
-        "[mesh]\nrectangle = {{ {mesh} }}\n[[material]]\nlaw = \"{law}\"\nyoung = 2e11\npoisson = 0.3\n\
-         density = 7800.0\n{boundary}{more}\n[[output]]\nkind = \"ledger\"\n"
-    );
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("ledger");
-    std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join(format!("{name}.toml"));
-    std::fs::write(&path, text).unwrap();
-    path
+/// The scene of a body, with a ledger that has a row for each step.
+fn scene(name: &str, body: Body) -> PathBuf {
+    body.table("[output]", "kind = \"ledger\"").write(&scenes::folder("ledger"), name)
 }
 
 fn of(scene: &std::path::Path, method: &str, degree: usize, sets: &[&str]) -> Outcome {
@@ -36,11 +27,6 @@ fn energy(outcome: &Outcome) -> f64 {
     outcome.number("kinetic_energy") + outcome.number("strain_energy")
 }
 
-const BOX: &str = "[initial]\nvelocity = [\"300*sin(pi*x)*cos(pi*y)\", \"-150*cos(pi*x)*sin(pi*y)\"]\n\
-                   [scheme]\nmethod = \"rk-dgfem\"\ndegree = 2\n[time]\nend = 1.5e-4";
-const WALL: &str = "kind = \"wall\"";
-const FREE: &str = "kind = \"free\"";
-
 /// What the steps lose beyond what the jumps take: the error of time integration.
 fn beyond_jumps(outcome: &Outcome) -> f64 {
     part(outcome, "flux_dissipation") + part(outcome, "boundary_dissipation") - part(outcome, "jumps")
@@ -51,7 +37,7 @@ fn beyond_jumps(outcome: &Outcome) -> f64 {
 /// tableau, which meets the jumps' order 2N + 1 first (at S1 two parts of 1e-5 nearly cancel). What the faces hold of the displacement is not counted as energy, and is a part of it. Bounds: a quarter of an order below what was measured.
 #[test]
 fn what_jumps_do_not_explain_falls_under_refinement_with_the_order_of_the_scheme() {
-    let scene = scene("box", "neo-hookean", "size = [1.0, 1.0], cells = [8, 8]", [WALL; 4], BOX);
+    let scene = scene("box", Body::smooth_box(8));
     let orders = [[2.21, 2.89, 4.09], [2.21, 2.9, 4.11], [0.6, 5.56, 5.62]];
     for (method, orders) in METHODS.into_iter().zip(orders) {
         for (degree, measured) in (1..=3).zip(orders) {
@@ -120,11 +106,10 @@ fn in_the_impact_steps_dissipate_and_the_control_of_the_curl_moves_next_to_nothi
 /// the right end exactly, so that the work is width times int t^2/(rho0 c_p) dt = .3 A^2 T 3/8 / (rho0 c_p).
 #[test]
 fn the_work_of_a_pulse_of_traction_is_that_of_the_plane_wave_and_goes_into_the_body() {
-    let pulse = "kind = \"traction\"\nvalue = [\"1e8*sin(pi*t/1e-4)^2\", \"0\"]";
-    let symmetry = "kind = \"symmetry\"";
-    let more = "[scheme]\nmethod = \"rk-dgfem\"\ndegree = 2\n[time]\nend = 1e-4";
-    let mesh = "size = [1.0, 0.3], cells = [20, 6]";
-    let scene = scene("pulse", "linear-elastic", mesh, [FREE, pulse, symmetry, symmetry], more);
+    let strip = Body::rectangle([1.0, 0.3], [20, 6]).material("linear-elastic", STEEL, "");
+    let pushed = strip.side("right", "traction", r#"value = ["1e8*sin(pi*t/1e-4)^2", "0"]"#);
+    let plane = pushed.side("bottom", "symmetry", "").side("top", "symmetry", "");
+    let scene = scene("pulse", plane.method("rk-dgfem").degree(2).end(1e-4));
     let exact = 0.3 * 1e16 * 1e-4 * 0.375 / (7800.0 * 5875.097);
     // Twice what was measured: work -4.5e-5 (ADER), 2.7e-7 (RK); what jumps do not explain 1.03e-4, -9e-8.
     let ader = [9e-5, 2e-4];
@@ -146,10 +131,13 @@ fn the_work_of_a_pulse_of_traction_is_that_of_the_plane_wave_and_goes_into_the_b
 /// moves: V t + b t^2/2.
 #[test]
 fn the_work_of_gravity_is_weight_times_displacement_of_the_centre() {
-    let more = "[initial]\nvelocity = [\"30*sin(pi*x)*cos(pi*y)\", \"-100 - 15*cos(pi*x)\"]\n\
-                [[source]]\nkind = \"gravity\"\nvalue = [\"0\", \"-1e5\"]\n\
-                [scheme]\nmethod = \"rk-dgfem\"\ndegree = 2\n[time]\nend = 3e-4";
-    let scene = scene("gravity", "neo-hookean", "size = [1.0, 1.0], cells = [8, 8]", [FREE; 4], more);
+    let shaken = Body::square(8).velocity(["30*sin(pi*x)*cos(pi*y)", "-100 - 15*cos(pi*x)"]);
+    let falling = shaken.table(
+        "[source]",
+        r#"kind = "gravity"
+value = ["0", "-1e5"]"#,
+    );
+    let scene = scene("gravity", falling.method("rk-dgfem").degree(2).end(3e-4));
     let t = 3e-4;
     let exact = 7800.0 * 1e5 * (100.0 * t + 1e5 * t * t / 2.0);
     for method in METHODS {
@@ -170,9 +158,8 @@ fn the_work_of_gravity_is_weight_times_displacement_of_the_centre() {
 /// 2.3e-5, 4.5e-6 (ADER-DGFEM) and 1.2e-5, 5.2e-7 (RK4; with rusanov 1.3e-8, 9.3e-10). The bounds are twice that.
 #[test]
 fn a_free_spinning_square_keeps_its_momenta() {
-    let more = "[initial]\nvelocity = [\"-800*(y-0.5)\", \"800*(x-0.5)\"]\n\
-                [scheme]\nmethod = \"rk-dgfem\"\ndegree = 2\n[time]\nend = 7.854e-3";
-    let scene = scene("spin", "neo-hookean", "size = [1.0, 1.0], cells = [4, 4]", [FREE; 4], more);
+    let spinning = Body::square(4).velocity(["-800*(y-0.5)", "800*(x-0.5)"]);
+    let scene = scene("spin", spinning.method("rk-dgfem").degree(2).end(7.854e-3));
     for (method, bounds) in METHODS.into_iter().zip([[8e-5, 1e-5], [8e-5, 1e-5], [2.5e-5, 1.1e-6]]) {
         let changes = [4, 8].map(|cells| {
             let set = format!("mesh.rectangle.cells=[{cells},{cells}]");
@@ -197,7 +184,7 @@ fn a_free_spinning_square_keeps_its_momenta() {
 /// What costs is asked for: without the table, or with `balance = false`, nothing of the balance is there.
 #[test]
 fn the_balance_is_there_only_where_a_ledger_asks_for_it_and_changes_no_energy() {
-    let scene = scene("asked", "neo-hookean", "size = [1.0, 1.0], cells = [4, 4]", [WALL; 4], BOX);
+    let scene = scene("asked", Body::smooth_box(4));
     let columns = |outcome: &Outcome| {
         let text = std::fs::read_to_string(outcome.path().join("ledger.csv")).unwrap();
         text.lines().next().unwrap().split(',').map(str::to_owned).collect::<Vec<_>>()
@@ -228,7 +215,7 @@ fn the_balance_is_there_only_where_a_ledger_asks_for_it_and_changes_no_energy() 
 
 #[test]
 fn balance_is_a_key_of_the_ledger_alone() {
-    let scene = scene("key", "neo-hookean", "size = [1.0, 1.0], cells = [4, 4]", [WALL; 4], BOX);
+    let scene = scene("key", Body::smooth_box(4));
     let load = |set: &str| dgmpm::parts::scene::Scene::load(&scene, &[set.to_owned()]);
     assert!(load("output.0.balance=true").unwrap().wants_displacement());
     assert!(!load("output.0.balance=false").unwrap().wants_displacement());

@@ -1,62 +1,50 @@
 //! Plastic flow makes no energy, wherever the material points stand: laws with memory sample on the Gauss nodes.
 
 mod runs;
+mod scenes;
 
 use dgmpm::parts::io::cloud_file;
 use dgmpm::parts::io::mesh_file;
 use dgmpm::parts::io::snapshot::{self, Snapshot};
 use dgmpm::parts::operators::Line;
-use dgmpm::parts::scene::{Histories, Scene};
+use dgmpm::parts::scene::Histories;
 use runs::Table;
+use scenes::{Body, STEEL};
 use std::path::Path;
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// Half of a Taylor bar of copper in plane strain against a wall, coarse.
-const BAR: &str = r#"
-[mesh]
-rectangle = { size = [0.0324, 0.0032], cells = [10, 1] }
-[[material]]
-law = "j2"
-young = 117e9
-poisson = 0.35
-density = 8930.0
-yield_stress = 4e8
-hardening = 1e8
-[initial]
-velocity = ["-227", "0"]
-[[boundary]]
-group = "left"
-kind = "wall"
-[[boundary]]
-group = "right"
-kind = "free"
-[[boundary]]
-group = "bottom"
-kind = "symmetry"
-[[boundary]]
-group = "top"
-kind = "free"
-[curl]
-control = "rotation"
-[scheme]
-method = "ader-dgmpm"
-degree = 2
-flux = "dual"
-[time]
-end = 2e-5
-[[output]]
-kind = "ledger"
-every_steps = 5
-[[output]]
-kind = "fields"
-at = [2e-5]
-"#;
+/// E, nu and rho0 of copper.
+const COPPER: [f64; 3] = [117e9, 0.35, 8930.0];
+/// Its yield stress and hardening.
+const YIELDS: &str = "yield_stress = 4e8\nhardening = 1e8";
+
+/// Half of a Taylor bar in plane strain against a wall, coarse; without material, start and end.
+fn shape() -> Body {
+    let bar = Body::rectangle([0.0324, 0.0032], [10, 1]).side("left", "wall", "").side("bottom", "symmetry", "");
+    let bar = bar.method("ader-dgmpm").degree(2).scheme("flux", "\"dual\"").table("curl", "control = \"rotation\"");
+    bar.ledger(5)
+}
+
+/// The bar of copper.
+fn copper() -> Body {
+    shape().material("j2", COPPER, YIELDS)
+}
+
+/// It flies against the wall; snapshots as `at` says.
+fn flying(end: &str, at: &str) -> Body {
+    copper().velocity(["-227", "0"]).time(end).table("[output]", &format!("kind = \"fields\"\n{at}"))
+}
+
+/// The bar for 20 us.
+fn taylor() -> Body {
+    flying("end = 2e-5", "at = [2e-5]")
+}
 
 /// A folder with the bar in it.
 fn bar() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("bar.toml"), BAR).unwrap();
+    taylor().write(folder.path(), "bar");
     folder
 }
 
@@ -157,16 +145,12 @@ fn the_program_says_where_histories_stand_and_strict_has_nothing_to_refuse() {
 
 #[test]
 fn only_cells_with_memory_leave_their_points_and_the_default_layout_is_by_law() {
-    let steel = "[[material]]\ngroup=\"steel\"\nlaw=\"neo-hookean\"\nyoung=2e11\npoisson=0.3\ndensity=7800\n";
-    let text = BAR.replace("[[material]]\n", &format!("{steel}[[material]]\ngroup=\"copper\"\n"));
-    let text = text.replace("rectangle = { size = [0.0324, 0.0032], cells = [10, 1] }", "file = \"given.msh\"");
+    let body = shape().mesh_file(Path::new("given.msh")).material("neo-hookean", STEEL, "group = \"steel\"");
+    let body = body.material("j2", COPPER, &format!("group = \"copper\"\n{YIELDS}")).end(2e-5);
     let mut mesh = dgmpm::parts::mesh::rectangle([4.0, 2.0], [4, 2]).unwrap();
     mesh.groups = vec!["steel".to_owned(), "copper".to_owned()];
     (0..8).for_each(|cell| mesh.cell_group[cell] = usize::from(cell % 4 >= 2));
-    let parse = |sets: &[&str]| {
-        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
-        Scene::parse(&text, Path::new("mixed.toml"), &sets).unwrap()
-    };
+    let parse = |sets: &[&str]| body.scene(sets);
     let nodes = Line::new(2).nodes();
     let scene = parse(&[]);
     let layout = |k: usize| scene.materials[k].cloud.layout.name();
@@ -202,8 +186,7 @@ fn only_cells_with_memory_leave_their_points_and_the_default_layout_is_by_law() 
 #[test]
 fn after_a_regrid_points_are_where_they_were_and_histories_on_the_nodes() {
     let folder = bar();
-    let regrid = format!("{BAR}[[regrid]]\nat = [1e-5]\nrefine = 2\npoints = \"keep\"\n");
-    std::fs::write(folder.path().join("bar.toml"), regrid).unwrap();
+    taylor().table("[regrid]", "at = [1e-5]\nrefine = 2\npoints = \"keep\"").write(folder.path(), "bar");
     let output = dgmpm(&folder, "run bar.toml --out run", &["cloud.layout=jitter"]);
     assert!(output.status.success(), "{:?}", said(&output));
     let run = folder.path().join("run");
@@ -235,10 +218,8 @@ fn a_start_from_exported_points_gives_nodes_the_histories_of_the_nearest() {
     let files = std::fs::read_dir(folder.path().join("run/export")).unwrap().map(|file| file.unwrap().path());
     let points =
         files.filter(|path| path.file_name().unwrap().to_string_lossy().starts_with("points_0")).max().unwrap();
-    let text = BAR
-        .replace("velocity = [\"-227\", \"0\"]", "from = \"cloud\"")
-        .replace("end = 2e-5", "start = 2e-5\nend = 2.05e-5");
-    std::fs::write(folder.path().join("on.toml"), text.replace("at = [2e-5]", "every_steps = 1")).unwrap();
+    let on = flying("start = 2e-5\nend = 2.05e-5", "every_steps = 1").initial("from = \"cloud\"");
+    on.write(folder.path(), "on");
     let cloud = format!("cloud={{layout=\"file\",path={points:?}}}");
     let second = dgmpm(&folder, "run on.toml --out on", &[&cloud]);
     assert!(second.status.success(), "{:?}", said(&second));

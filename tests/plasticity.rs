@@ -1,17 +1,18 @@
 //! J2 plasticity: the elastoplastic impact against its exact solution, and what internal variables must keep.
 
 mod runs;
+mod scenes;
 
 use dgmpm::parts::exact::{Exact, J2Impact};
 use dgmpm::parts::io::snapshot::{self, Snapshot};
 use dgmpm::parts::lane::{Kernel, as_f64};
 use dgmpm::parts::material::J2;
 use dgmpm::parts::problem::{Given, Problem, Setup};
-use dgmpm::parts::scene::Scene;
 use dgmpm::parts::state::State;
 use dgmpm::parts::step::Law;
 use dgmpm::parts::step::{Corrected, Correction, Made, Motion, Scheme};
 use runs::run;
+use scenes::{Body, STEEL};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
@@ -84,41 +85,19 @@ fn errors_of_the_elastoplastic_impact_fall_with_the_mesh_for_all_methods() {
     }
 }
 
-/// A square of J2 steel, pushed and sheared to and fro.
-const CYCLES: &str = r#"
-[mesh]
-rectangle = { size = [1.0, 1.0], cells = [2, 2] }
-[cloud]
-layout = "paper"
-histories = "points"               # also away from the nodes: the update of points is what is tested
-[[material]]
-law = "j2"
-young = 2e11
-poisson = 0.3
-density = 7800.0
-yield_stress = 4e8
-hardening = 1e8
-[initial]
-velocity = ["50*sin(3*y)", "20*x*y"]
-[[boundary]]
-group = "left"
-kind = "clamped"
-[[boundary]]
-group = "right"
-kind = "velocity"
-value = ["-20*cos(8e3*t)", "30*cos(5e3*t)"]
-[[boundary]]
-group = "bottom"
-kind = "symmetry"
-[[boundary]]
-group = "top"
-kind = "free"
-[scheme]
-degree = 1
-method = "ader-dgmpm"
-[time]
-end = 1.0
-"#;
+/// A square of J2 steel that yields at so many Pa, and hardens. Histories are at the paper's points, also away from the nodes: the
+/// update of points is what is tested.
+fn steel(yields: f64, hardening: f64) -> Body {
+    let law = format!("yield_stress = {yields:e}\nhardening = {hardening:e}");
+    let square = Body::square(2).material("j2", STEEL, &law).side("bottom", "symmetry", "");
+    square.table("cloud", "layout = \"paper\"\nhistories = \"points\"").method("ader-dgmpm").end(1.0)
+}
+
+/// Such a square, pushed and sheared to and fro.
+fn cycles() -> Body {
+    let pushed = steel(4e8, 1e8).degree(1).velocity(["50*sin(3*y)", "20*x*y"]).side("left", "clamped", "");
+    pushed.side("right", "velocity", r#"value = ["-20*cos(8e3*t)", "30*cos(5e3*t)"]"#)
+}
 
 struct March {
     scheme: Scheme,
@@ -129,14 +108,12 @@ struct March {
 
 impl March {
     fn new(sets: &[&str], kernel: Kernel) -> Self {
-        Self::of(CYCLES, sets, kernel)
+        Self::of(&cycles(), sets, kernel)
     }
 
-    fn of(text: &str, sets: &[&str], kernel: Kernel) -> Self {
-        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
-        let scene = Scene::parse(text, Path::new("cycles.toml"), &sets).unwrap();
-        let problem = Setup::of(&scene).kernel(kernel).build().unwrap();
-        let (courant, h) = (problem.settings.courant, problem.body.smallest_h());
+    fn of(body: &Body, sets: &[&str], kernel: Kernel) -> Self {
+        let problem = Setup::of(&body.scene(sets)).kernel(kernel).build().unwrap();
+        let (courant, h) = (problem.settings.courant, problem.body.mesh.smallest_h());
         let Problem { scheme, state, .. } = problem;
         let mut motion = Motion::unsurveyed(&scheme, state).with_balance(&scheme);
         motion.survey(&scheme).unwrap();
@@ -319,46 +296,19 @@ fn a_correction_from_outside_the_crate_sees_and_changes_the_memory_of_the_materi
 }
 
 /// Two materials in one body, of which one has memory; the test makes the mesh.
-const MIXED: &str = r#"
-[mesh]
-file = "given.msh"
-[[material]]
-group = "hard"
-law = "neo-hookean"
-young = 2e11
-poisson = 0.3
-density = 7800.0
-[[material]]
-group = "soft"
-law = "j2"
-young = 7e10
-poisson = 0.3
-density = 2700.0
-yield_stress = 1e8
-hardening = 1e9
-[scheme]
-degree = 1
-method = "ader-dgmpm"
-[time]
-end = 1.0
-[[boundary]]
-group = "left"
-kind = "wall"
-[[boundary]]
-group = "right"
-kind = "free"
-[[boundary]]
-group = "bottom"
-kind = "symmetry"
-[[boundary]]
-group = "top"
-kind = "symmetry"
-"#;
+fn mixed() -> Body {
+    let rectangle = Body::default().mesh_file(Path::new("given.msh")).sides("symmetry");
+    let body = rectangle.side("left", "wall", "").side("right", "free", "").method("ader-dgmpm").degree(1).end(1.0);
+    body.material("neo-hookean", STEEL, "group = \"hard\"").material(
+        "j2",
+        [7e10, 0.3, 2700.0],
+        "group = \"soft\"\nyield_stress = 1e8\nhardening = 1e9",
+    )
+}
 
 #[test]
 fn elastic_cells_hold_nothing_and_plastic_ones_what_their_points_need() {
-    let at_points = ["cloud.histories=points".to_owned()];
-    let scene = Scene::parse(MIXED, Path::new("mixed.toml"), &at_points).unwrap();
+    let scene = mixed().scene(&["cloud.histories=points"]);
     let mut mesh = dgmpm::parts::mesh::rectangle([4.0, 5.0], [4, 5]).unwrap();
     mesh.groups = vec!["hard".to_owned(), "soft".to_owned()];
     (0..20).for_each(|cell| mesh.cell_group[cell] = usize::from(cell % 4 >= 2));
@@ -382,8 +332,11 @@ fn elastic_cells_hold_nothing_and_plastic_ones_what_their_points_need() {
     let numbers: Vec<f64> = (0..virgin.len()).map(|i| i as f64).collect();
     scheme.set_internal(&mut state, &numbers);
     assert_eq!(scheme.internal_of(&state), numbers);
-    let elastic =
-        March::of(CYCLES, &["material.0={law=\"neo-hookean\",young=2e11,poisson=0.3,density=7800}"], Kernel::widest());
+    let elastic = March::of(
+        &cycles(),
+        &["material.0={law=\"neo-hookean\",young=2e11,poisson=0.3,density=7800}"],
+        Kernel::widest(),
+    );
     assert!(elastic.motion.state.internal.is_empty() && elastic.scheme.histories.is_empty());
     assert!(elastic.scheme.internal_of(&elastic.motion.state).is_empty());
 }
@@ -485,10 +438,9 @@ fn an_elastic_scene_stores_and_writes_no_internal_variable() {
 /// nodes with the history of the nearest point the paper's layout is 5e-3 above the others here.)
 #[test]
 fn energies_are_those_of_the_points() {
-    let vortex = CYCLES.replace("4e8", "1e7").replace("1e8", "0.0").replace("degree = 1", "degree = 2");
-    let start = "initial.velocity=[\"20*sin(pi*x)*cos(pi*y)\",\"-20*cos(pi*x)*sin(pi*y)\"]";
-    let free = ["boundary.0={group=\"left\",kind=\"free\"}", "boundary.1={group=\"right\",kind=\"free\"}"];
-    let sets = ["mesh.rectangle.cells=[6,6]", "curl.control=off", start, free[0], free[1], "boundary.2.kind=free"];
+    let start = ["20*sin(pi*x)*cos(pi*y)", "-20*cos(pi*x)*sin(pi*y)"];
+    let vortex = steel(1e7, 0.0).degree(2).velocity(start).sides("free");
+    let sets = ["mesh.rectangle.cells=[6,6]", "curl.control=off"];
     let energies = |more: &str| {
         let march = March::of(&vortex, &[&sets[..], &[more]].concat(), Kernel::widest()).steps(300);
         let totals = march.scheme.totals(&march.motion.state);
@@ -520,7 +472,7 @@ fn the_weights_of_the_points_integrate_a_uniform_state_exactly() {
         for degree in 1..=3 {
             let (layout, degree) = (format!("cloud.layout={layout}"), format!("scheme.degree={degree}"));
             let sets = ["mesh.rectangle.cells=[3,4]", &layout, &degree, uniform];
-            let march = March::of(CYCLES, &sets, Kernel::widest());
+            let march = March::of(&cycles(), &sets, Kernel::widest());
             let law = &march.scheme.laws[0];
             let expected = law.response([1.01, 0.002, 0.0, 0.99], &law.virgin());
             let totals = march.scheme.totals(&march.motion.state);

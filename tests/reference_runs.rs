@@ -4,7 +4,9 @@
 //! solution. Each bound stands beside the measured value that it leaves room for.
 
 mod python;
+mod scenes;
 
+use scenes::Body;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::LazyLock;
@@ -91,34 +93,9 @@ fn impact_on_an_unstructured_mesh_agrees_with_the_stored_references() {
 
 /// The smooth nonlinear motion of a box between frictionless walls.
 fn box_scene() -> PathBuf {
-    let walls = ["left", "right", "bottom", "top"].map(|g| format!("[[boundary]]\ngroup = \"{g}\"\nkind = \"wall\"\n"));
-    let text = format!(
-        r#"
-[mesh]
-rectangle = {{ size = [1.0, 1.0], cells = [16, 16] }}
-[[material]]
-law = "neo-hookean"
-young = 2e11
-poisson = 0.3
-density = 7800.0
-[initial]
-velocity = ["300*sin(pi*x)*cos(pi*y)", "-150*cos(pi*x)*sin(pi*y)"]
-{}
-[scheme]
-method = "ader-dgmpm"
-degree = 2
-[time]
-end = 1.5e-4
-[[output]]
-kind = "fields"
-at = [1.5e-4]
-"#,
-        walls.concat()
-    );
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("reference_runs/box.toml");
-    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-    std::fs::write(&path, text).unwrap();
-    path
+    let fields = "kind = \"fields\"\nat = [1.5e-4]";
+    let smooth = Body::smooth_box(16).method("ader-dgmpm").table("[output]", fields);
+    smooth.write(&scenes::folder("reference_runs"), "box")
 }
 
 /// Errors of (F, v / c_p) on n x n and 2n x 2n cells, measured: S1 2.43e-3, 5.98e-4 (16, 32; ratio 4.07), S2 6.14e-4,

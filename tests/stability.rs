@@ -1,7 +1,10 @@
 //! The linearised step: rates and limits of the design, known faults found, the command line.
 
+mod scenes;
+
 use assert_cmd::Command;
 use dgmpm::parts::stability::{Domain, Measured, Pattern, Questions, Setup, measure};
+use scenes::Body;
 
 const ASKED: Questions = Questions { angles: 12, limit: false, norms: false };
 
@@ -120,11 +123,11 @@ fn a_short_step_grows_as_the_limit_dt_to_zero() {
 #[test]
 fn norms_of_a_patch_are_those_of_its_body() {
     // Walls mirror a wave; a periodic body of 3 x 3 cells is the patch of 3 x 3 angles itself.
-    let text = "[mesh]\nrectangle = { size = [3.0, 3.0], cells = [3, 3] }\n[[material]]\nlaw = \"linear-elastic\"\n\
-         young = 1.0\npoisson = 0.3\ndensity = 1.0\n[[boundary]]\ngroup = \"left\"\nkind = \"periodic\"\npartner = \"right\"\n\
-         [[boundary]]\ngroup = \"bottom\"\nkind = \"periodic\"\npartner = \"top\"\n\
-         [scheme]\nmethod = \"ader-dgfem\"\ndegree = 1\n[time]\nend = 1.0\n";
-    let scene = dgmpm::parts::scene::Scene::parse(text, std::path::Path::new("x.toml"), &[]).unwrap();
+    let body = Body::rectangle([3.0; 2], [3; 2]).material("linear-elastic", [1.0, 0.3, 1.0], "").sides("periodic");
+    let pairs = [("left", "right"), ("right", "left"), ("bottom", "top"), ("top", "bottom")];
+    let periodic = |body: Body, (side, partner)| body.side(side, "periodic", &format!("partner = \"{partner}\""));
+    let body = pairs.into_iter().fold(body, periodic).method("ader-dgfem").degree(1).end(1.0);
+    let scene = body.scene(&[]);
     let asked = Questions { angles: 3, norms: true, ..ASKED };
     let body = measure(&Setup { domain: Domain::Scene(Box::new(scene)), ..patch(&[]) }, asked).unwrap();
     let sets = ["scheme.method=ader-dgfem", "material.0.law=linear-elastic"];
@@ -179,6 +182,63 @@ fn bad_input_is_refused_with_its_remedy() {
         let out = String::from_utf8(out).unwrap();
         assert!(out.contains(expected) && out.starts_with("error: "), "{args:?}: {out}");
     }
+}
+
+/// Standard output of a command that succeeds, by lines.
+fn said(args: &[&str]) -> Vec<String> {
+    let out = command(args).assert().success().get_output().stdout.clone();
+    String::from_utf8(out).unwrap().lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn a_method_without_points_has_one_row_for_all_layouts() {
+    let layouts = ["--layout", "gauss,midpoints,paper", "--degree", "1", "--angles", "2", "--semi-discrete"];
+    let rows = said(&[&layouts[..], &["--method", "rk-dgfem,ader-dgmpm"]].concat());
+    // The head, one row of rk-dgfem and three of ader-dgmpm.
+    assert_eq!(rows.len(), 1 + 1 + 3, "{rows:#?}");
+    assert!(
+        rows[1].starts_with("rk-dgfem    1  - ") && rows[2].contains("gauss") && rows[4].contains("paper"),
+        "{rows:#?}"
+    );
+    assert_eq!(said(&[&layouts[..], &["--method", "ader-dgfem"]].concat()).len(), 2);
+}
+
+/// Exit code 2 and the message of a command; it left no file and printed no row.
+fn refusal(args: &[&str], file: &std::path::Path) -> String {
+    let out = command(args).assert().code(2).get_output().clone();
+    assert!(out.stdout.is_empty() && !file.exists(), "{args:?}");
+    String::from_utf8(out.stderr).unwrap()
+}
+
+#[test]
+fn a_plot_of_an_unknown_format_is_an_error_before_the_work_begins() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["x.pdf", "x"] {
+        let (plot, csv) = (folder.path().join(name), folder.path().join("x.csv"));
+        let [plot, csv_name] = [&plot, &csv].map(|path| path.to_str().unwrap());
+        let message = refusal(&["--over", "f11=.9,1", "--csv", csv_name, "--plot", plot], &csv);
+        assert!(message.contains(plot) && message.contains(".svg or .png"), "{message}");
+    }
+}
+
+#[test]
+fn options_that_would_have_no_effect_are_refused_by_name() {
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/manufactured.toml");
+    let cases: [(&[&str], &str); 6] = [
+        (&["--semi-discrete", "--dt", ".1"], "--dt asks about a step"),
+        (&["--semi-discrete", "--safety", ".5"], "--safety asks about a step"),
+        (&["--semi-discrete", "--limit"], "--limit asks about a step"),
+        (&["--semi-discrete", "--over", "dt=.1,.2"], "--dt asks about a step"),
+        (&["--pattern", "halves"], "--contrast"),
+        (&[scene, "--over", "contrast=2,4"], "a scene has its own"),
+    ];
+    for (args, words) in cases {
+        let message = refusal(args, std::path::Path::new("no file"));
+        assert!(message.starts_with("error: ") && message.contains(words), "{args:?}: {message}");
+    }
+    // A contrast may be a list, and the pattern then is that of all its values.
+    let halves = ["--pattern", "halves", "--over", "contrast=2,4", "--degree", "1", "--angles", "2", "--semi-discrete"];
+    assert_eq!(said(&halves).len(), 3);
 }
 
 /// The default control and flux: no growth at rest or at the states of the design, by the program's own step.

@@ -1,6 +1,9 @@
 //! `dgmpm study`: its files, its predictions of errors, its reference, its refusals. Times are not tested: machines are noisy.
 
+mod scenes;
+
 use assert_cmd::Command;
+use scenes::Body;
 use std::path::{Path, PathBuf};
 
 const MESHES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes");
@@ -81,25 +84,11 @@ fn a_setting_chosen_for_an_error_has_it_within_a_factor_of_two_of_the_prediction
     }
 }
 
-/// The smooth box on 8 x 8 cells: no exact solution.
-fn smooth_box(folder: &Path) -> PathBuf {
-    let walls = ["left", "right", "bottom", "top"].map(|g| format!("[[boundary]]\ngroup = \"{g}\"\nkind = \"wall\"\n"));
-    let text = format!(
-        "[mesh]\nrectangle = {{ size = [1.0, 1.0], cells = [8, 8] }}\n\
-         [[material]]\nlaw = \"neo-hookean\"\nyoung = 2e11\npoisson = 0.3\ndensity = 7800.0\n\
-         [initial]\nvelocity = [\"300*sin(pi*x)*cos(pi*y)\", \"-150*cos(pi*x)*sin(pi*y)\"]\n\
-         {}[scheme]\nmethod = \"rk-dgfem\"\ndegree = 2\n[time]\nend = 1.5e-4\n",
-        walls.join("")
-    );
-    let path = folder.join("box.toml");
-    std::fs::write(&path, text).unwrap();
-    path
-}
-
 #[test]
 fn without_an_exact_solution_a_finer_run_stands_in_and_knows_its_own_error() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = smooth_box(folder.path());
+    // The smooth box: no exact solution.
+    let scene = Body::smooth_box(8).write(folder.path(), "box");
     let json = |options: &str, out: &str| -> serde_json::Value {
         let out = folder.path().join(out);
         study(&scene, &out, options).unwrap();

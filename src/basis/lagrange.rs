@@ -53,13 +53,6 @@ impl Lagrange {
         outer(&self.values(xi[0]), &self.values(xi[1]))
     }
 
-    /// d Phi_a / d xi_b at xi for b = 1, 2.
-    pub fn gradients_2d(&self, xi: [f64; 2]) -> [Vec<f64>; 2] {
-        let values = xi.map(|x| self.values(x));
-        let slopes = xi.map(|x| self.derivatives(x));
-        [outer(&slopes[0], &values[1]), outer(&values[0], &slopes[1])]
-    }
-
     /// Parent coordinates of node a = i M + j.
     pub fn node_2d(&self, a: usize) -> [f64; 2] {
         [self.nodes[a / self.len()], self.nodes[a % self.len()]]

@@ -4,6 +4,7 @@
 //! Legendre products and constant weight. The basis must be the full Q_N: with total-degree P_N the scheme is unstable.
 
 use crate::error::Error;
+use crate::quadrature;
 use nalgebra::DMatrix;
 
 /// Singular values below this share of the largest do not count for the rank: the points of a cell in real use are
@@ -126,19 +127,11 @@ fn inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
 
 /// Orthonormal shifted Legendre polynomials sqrt(2k+1) P_k(2x - 1) and their derivatives, k = 0..=N.
 pub fn legendre(degree: usize, x: f64) -> (Vec<f64>, Vec<f64>) {
-    let z = 2.0 * x - 1.0;
-    let (mut p, mut d) = (vec![1.0; degree + 1], vec![0.0; degree + 1]);
-    for k in 1..=degree {
-        let (kf, before) = (k as f64, if k > 1 { (p[k - 2], d[k - 2]) } else { (0.0, 0.0) });
-        p[k] = ((2.0 * kf - 1.0) * z * p[k - 1] - (kf - 1.0) * before.0) / kf;
-        d[k] = before.1 + 2.0 * (2.0 * kf - 1.0) * p[k - 1];
-    }
-    for k in 0..=degree {
+    let of = |(k, (p, slope))| {
         let norm = (2.0 * k as f64 + 1.0).sqrt();
-        p[k] *= norm;
-        d[k] *= norm;
-    }
-    (p, d)
+        (p * norm, 2.0 * slope * norm)
+    };
+    quadrature::legendre(2.0 * x - 1.0).take(degree + 1).enumerate().map(of).unzip()
 }
 
 fn legendre_2d(degree: usize, xi: [f64; 2]) -> Vec<f64> {

@@ -1,36 +1,22 @@
 //! All measurements of `make bench`, into CSV, tables and pictures.
 
+use super::series::{AS_MANY, SERIES, SIZES, UNSTRUCTURED};
 use super::summary::{self, Row};
 use super::{Domain, Figures, Flops, Length, Measured, Peaks, Setup, count, measure, peaks};
-use crate::chart::{Chart, Line, Marker, Scale, save};
+use crate::chart::{Chart, Line, Marker, Scale, Stroke, save};
 use crate::error::Result;
 use crate::io::pending::write_text;
 use crate::io::read_mesh;
 use crate::lane::Kernel;
-use crate::registry::Method;
 use crate::study::machine;
 use std::path::{Path, PathBuf};
 
-/// Sizes, in grid unknowns: near the caches, in memory, and what fills it.
-pub const SIZES: [usize; 3] = [60_000, 900_000, 10_000_000];
 /// Runs of the headline, of which the median stands; of the rest; seconds of a run.
 const RUNS: usize = 5;
 const FEW: usize = 3;
 const SECONDS: f64 = 0.3;
 /// Steps of the largest size.
 const STEPS: usize = 4;
-
-/// A series: method and layout, as the tables and pictures call it.
-pub const SERIES: [(&str, Method, Option<&str>, Marker); 4] = [
-    ("rk-dgfem", Method::RkDgfem, None, Marker::Circle),
-    ("ader-dgfem", Method::AderDgfem, None, Marker::Triangle),
-    ("ader-dgmpm, lattice", Method::AderDgmpm, Some("midpoints"), Marker::Square),
-    ("ader-dgmpm, any cloud", Method::AderDgmpm, Some("jitter"), Marker::Cross),
-];
-
-/// The variants on the unstructured mesh and on squares beside it.
-pub const UNSTRUCTURED: &str = "unstructured";
-pub const AS_MANY: &str = "as many squares";
 
 /// Measurements that are alternated, so that a busy moment of the machine meets all of them.
 struct Batch {
@@ -196,7 +182,7 @@ fn rates(rows: &[Row]) -> Chart {
         let (name, at) = (format!("{name} S{degree}"), (row.figures.measured.dofs as f64, row.figures.measured.rate()));
         match lines.iter_mut().find(|line| line.name == name) {
             Some(line) => line.points.push(at),
-            None => lines.push(Line { name, colour: degree, marker, points: vec![at] }),
+            None => lines.push(Line { name, colour: degree, marker, stroke: Stroke::Full, points: vec![at] }),
         }
     }
     Chart {
@@ -219,13 +205,19 @@ fn roofline(rows: &[Row]) -> Chart {
     let mut lines = Vec::new();
     if !rows.is_empty() {
         let name = "triad, FMA (measured)".to_owned();
-        lines.push(Line { name, colour: 0, marker: Marker::Bare, points: roof });
+        lines.push(Line { name, colour: 0, marker: Marker::Bare, stroke: Stroke::Full, points: roof });
     }
     for row in rows {
         let (name, _, _, marker) = SERIES[row.series];
         let degree = row.figures.setup.degree;
         let at = (row.figures.flops.total() / row.figures.bytes, row.figures.flop_rate());
-        lines.push(Line { name: format!("{name} S{degree}"), colour: degree, marker, points: vec![at] });
+        lines.push(Line {
+            name: format!("{name} S{degree}"),
+            colour: degree,
+            marker,
+            stroke: Stroke::Full,
+            points: vec![at],
+        });
     }
     Chart {
         title: "Roofline of one thread, 9e5 DoF".to_owned(),

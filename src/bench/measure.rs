@@ -23,6 +23,22 @@ pub enum Length {
     Seconds(f64),
 }
 
+impl Length {
+    /// Of a number of steps or of seconds, where one is given.
+    ///
+    /// # Errors
+    /// A number that is not above 0.
+    pub fn of(steps: Option<usize>, seconds: Option<f64>) -> Result<Self> {
+        match (steps, seconds) {
+            (Some(0), _) => Err(Error::input("--steps is 0", "give a number of steps from 1")),
+            (Some(steps), _) => Ok(Self::Steps(steps)),
+            (_, Some(s)) if s.is_finite() && s > 0.0 => Ok(Self::Seconds(s)),
+            (_, Some(s)) => Err(Error::input(format!("--seconds is {s}"), "give a number above 0")),
+            _ => Ok(Self::Wave),
+        }
+    }
+}
+
 /// What was measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {

@@ -9,6 +9,7 @@ mod campaign;
 mod flops;
 mod measure;
 mod peaks;
+mod series;
 mod setup;
 mod summary;
 mod table;

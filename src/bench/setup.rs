@@ -68,7 +68,7 @@ impl Setup {
         let problem = setup.build_from(body, |mesh, scheme| Ok(wave.state(mesh, scheme)))?;
         let nodes = problem.body.mesh.cells.len() * problem.scheme.operators.nodes();
         let points = if scene.scheme.method.has_points() { problem.places() } else { nodes };
-        let h = problem.body.smallest_h();
+        let h = problem.body.mesh.smallest_h();
         Ok(Subject { problem, points, wave, h })
     }
 

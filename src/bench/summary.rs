@@ -1,7 +1,7 @@
 //! The figures of a campaign as lines, CSV and Markdown.
 
 use super::Figures;
-use super::campaign::{AS_MANY, SERIES, SIZES, UNSTRUCTURED};
+use super::series::{AS_MANY, SERIES, SIZES, UNSTRUCTURED};
 use crate::step::Phase;
 use crate::step::phase::NAMES;
 

@@ -1,8 +1,8 @@
-use super::campaign::SIZES;
+use super::series::SIZES;
 use super::summary::{self, Row};
 use super::*;
 use crate::basis::TimeBasis;
-use crate::chart::{Chart, Line, Marker, Scale, save};
+use crate::chart::{Chart, Line, Marker, Scale, Stroke, save};
 use crate::lane::counted::{self, Counts, SLOTS};
 use crate::lane::{F8, Kernel, Lanes, Work, load_array};
 use crate::material::{LinearElastic, Material, NeoHookean, Past, virgin};
@@ -189,7 +189,13 @@ fn tables_hold_what_was_measured_and_leave_out_what_was_not() {
 #[test]
 fn a_chart_is_drawn_and_an_empty_one_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let line = |marker| Line { name: format!("{marker:?}"), colour: 2, marker, points: vec![(1.0, 10.0), (5.0, 70.0)] };
+    let line = |marker| Line {
+        name: format!("{marker:?}"),
+        colour: 2,
+        marker,
+        stroke: Stroke::Full,
+        points: vec![(1.0, 10.0), (5.0, 70.0)],
+    };
     let markers = [Marker::Bare, Marker::Circle, Marker::Triangle, Marker::Square, Marker::Cross];
     let [title, x, y] = ["title", "x", "y"].map(str::to_owned);
     let chart = Chart { title, x, y, scales: [Scale::Log; 2], lines: markers.map(line).to_vec() };

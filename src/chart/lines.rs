@@ -1,6 +1,6 @@
 //! Charts of lines, on logarithmic or linear axes.
 
-use super::{COLOURS, FONT, Picture, SIZE, decades, square};
+use super::{COLOURS, FONT, SIZE};
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
@@ -21,6 +21,17 @@ pub enum Marker {
     Cross,
 }
 
+/// How the points of a line are joined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stroke {
+    /// By a full line.
+    Full,
+    /// By dashes.
+    Dashed,
+    /// By short dashes.
+    Dotted,
+}
+
 /// A line of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
@@ -28,8 +39,10 @@ pub struct Line {
     pub name: String,
     /// Number of its colour: the degree.
     pub colour: usize,
-    /// Its points.
+    /// The marks at its points.
     pub marker: Marker,
+    /// What joins its points.
+    pub stroke: Stroke,
     /// The positions of the points.
     pub points: Vec<(f64, f64)>,
 }
@@ -58,8 +71,12 @@ pub struct Chart {
     pub lines: Vec<Line>,
 }
 
-impl Picture for Chart {
-    fn draw<B: DrawingBackend>(&self, area: DrawingArea<B, Shift>) -> Result<(), String> {
+impl Chart {
+    /// Draws it on an area of [`SIZE`].
+    ///
+    /// # Errors
+    /// There is nothing to draw, or the backend fails.
+    pub(super) fn draw<B: DrawingBackend>(&self, area: DrawingArea<B, Shift>) -> Result<(), String> {
         let text = |why: DrawingAreaErrorKind<B::ErrorType>| why.to_string();
         let all = || self.lines.iter().flat_map(|line| &line.points);
         if all().next().is_none() {
@@ -79,28 +96,50 @@ impl Picture for Chart {
         };
         let x = range(self.scales[0], &mut all().map(|p| p.0));
         let y = range(self.scales[1], &mut all().map(|p| p.1));
+        let decade = (self.scales[1] == Scale::Log && y.1 / y.0 < 11.0).then_some(y.0);
         let (x, y) = (x.0..x.1, y.0..y.1);
         match self.scales {
             [Scale::Log, Scale::Log] => {
-                self.paint(&area, builder.build_cartesian_2d(x.log_scale(), y.log_scale()).map_err(text)?)
+                self.paint(&area, builder.build_cartesian_2d(x.log_scale(), y.log_scale()).map_err(text)?, decade)
             }
             [Scale::Log, Scale::Linear] => {
-                self.paint(&area, builder.build_cartesian_2d(x.log_scale(), y).map_err(text)?)
+                self.paint(&area, builder.build_cartesian_2d(x.log_scale(), y).map_err(text)?, decade)
             }
             [Scale::Linear, Scale::Log] => {
-                self.paint(&area, builder.build_cartesian_2d(x, y.log_scale()).map_err(text)?)
+                self.paint(&area, builder.build_cartesian_2d(x, y.log_scale()).map_err(text)?, decade)
             }
-            [Scale::Linear, Scale::Linear] => self.paint(&area, builder.build_cartesian_2d(x, y).map_err(text)?),
+            [Scale::Linear, Scale::Linear] => {
+                self.paint(&area, builder.build_cartesian_2d(x, y).map_err(text)?, decade)
+            }
         }
     }
-}
 
-impl Chart {
+    /// Names what lies in a single decade of the ordinate, from `low`, inside of the chart: it has labels at its ends alone.
+    fn name_between<B: DrawingBackend, X, Y>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        chart: &ChartContext<B, Cartesian2d<X, Y>>,
+        low: f64,
+    ) -> Result<(), DrawingAreaErrorKind<B::ErrorType>>
+    where
+        X: Ranged<ValueType = f64>,
+        Y: Ranged<ValueType = f64>,
+    {
+        let style = (FONT, 14).into_text_style(area).color(&RGBColor(110, 110, 110));
+        let left = chart.plotting_area().get_x_axis_pixel_range().start;
+        let x = self.lines.iter().flat_map(|line| &line.points).map(|p| p.0).next().unwrap_or(0.0);
+        [2.0, 5.0].into_iter().try_for_each(|k| {
+            let height = chart.backend_coord(&(x, k * low)).1;
+            area.draw(&Text::new(format!("{:.0e}", k * low), (left + 8, height), style.clone()))
+        })
+    }
+
     /// Axes, lines and legend.
     fn paint<B: DrawingBackend, X, Y>(
         &self,
         area: &DrawingArea<B, Shift>,
         mut chart: ChartContext<B, Cartesian2d<X, Y>>,
+        decade: Option<f64>,
     ) -> Result<(), String>
     where
         X: Ranged<ValueType = f64> + ValueFormatter<f64>,
@@ -120,10 +159,19 @@ impl Chart {
             .axis_desc_style((FONT, 17))
             .draw()
             .map_err(text)?;
+        if let Some(y) = decade {
+            self.name_between(area, &chart, y).map_err(text)?;
+        }
         for (k, line) in self.lines.iter().enumerate() {
             let colour = COLOURS[line.colour % COLOURS.len()];
             let style = ShapeStyle::from(colour).stroke_width(2);
-            chart.draw_series(LineSeries::new(line.points.clone(), style)).map_err(text)?;
+            let points = line.points.clone();
+            match line.stroke {
+                Stroke::Full => chart.draw_series(LineSeries::new(points, style)),
+                Stroke::Dashed => chart.draw_series(DashedLineSeries::new(points, 7, 5, style)),
+                Stroke::Dotted => chart.draw_series(DashedLineSeries::new(points, 2, 4, style)),
+            }
+            .map_err(text)?;
             for &point in &line.points {
                 mark(area, line.marker, chart.backend_coord(&point), colour).map_err(text)?;
             }
@@ -164,4 +212,16 @@ fn mark<B: DrawingBackend>(
         Marker::Square => area.draw(&square(at, full)),
         Marker::Cross => area.draw(&Cross::new(at, 5, ShapeStyle::from(colour).stroke_width(2))),
     }
+}
+
+/// A square of 9 x 9 pixels.
+fn square(at: (i32, i32), style: ShapeStyle) -> plotters::element::Rectangle<(i32, i32)> {
+    plotters::element::Rectangle::new([(at.0 - 4, at.1 - 4), (at.0 + 4, at.1 + 4)], style)
+}
+
+/// Whole decades around positive numbers.
+fn decades(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+    let (low, high) = (low.log10().floor(), high.log10().ceil());
+    (10_f64.powf(low), 10_f64.powf(if high > low { high } else { low + 1.0 }))
 }

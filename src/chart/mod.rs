@@ -1,22 +1,21 @@
-//! Pictures: the common parts, and charts of lines.
+//! Charts of lines, as SVG and as PNG.
 
 mod lines;
 
-pub use lines::{Chart, Line, Marker, Scale};
+pub use lines::{Chart, Line, Marker, Scale, Stroke};
 
 use crate::error::{Error, Result};
 use crate::io::pending::Pending;
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::path::Path;
 use std::sync::Once;
 
 /// Width and height of a picture, pixels.
-pub const SIZE: (u32, u32) = (900, 620);
+const SIZE: (u32, u32) = (900, 620);
 /// The font of all text.
-pub const FONT: &str = "sans-serif";
+const FONT: &str = "sans-serif";
 /// Colours by degree, from 0. Colour-blind readers can tell them apart (Okabe, Ito).
-pub const COLOURS: [RGBColor; 7] = [
+const COLOURS: [RGBColor; 7] = [
     RGBColor(120, 120, 120),
     RGBColor(230, 159, 0),
     RGBColor(0, 114, 178),
@@ -26,32 +25,50 @@ pub const COLOURS: [RGBColor; 7] = [
     RGBColor(86, 180, 233),
 ];
 
-/// Something to draw.
-pub trait Picture {
-    /// Draws it on an area of [`SIZE`].
+/// The format of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Lines and text.
+    Svg,
+    /// Pixels.
+    Png,
+}
+
+impl Format {
+    /// The format that the ending of a path gives.
     ///
     /// # Errors
-    /// There is nothing to draw, or the backend fails.
-    fn draw<B: DrawingBackend>(&self, area: DrawingArea<B, Shift>) -> std::result::Result<(), String>;
+    /// Another ending.
+    pub fn of(path: &Path) -> Result<Self> {
+        match path.extension().and_then(|ending| ending.to_str()) {
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            _ => Err(Error::input(
+                format!("the format of the picture {} is not known", path.display()),
+                "give a name that ends in .svg or .png",
+            )),
+        }
+    }
 }
 
 /// Draws a picture into `path`. The ending of the path (`svg`, `png`) gives the format.
 ///
 /// # Errors
-/// There is nothing to draw, or the file cannot be written.
-pub fn save<P: Picture>(picture: &P, path: &Path) -> Result<()> {
+/// Another ending, nothing to draw, or a file that cannot be written.
+pub fn save(chart: &Chart, path: &Path) -> Result<()> {
+    let format = Format::of(path)?;
     fonts();
     let pending = Pending::new(path)?;
     let failed = |why: String| Error::output(path, why);
-    if path.extension().is_some_and(|ending| ending == "svg") {
+    if format == Format::Svg {
         let mut text = String::new();
-        picture.draw(SVGBackend::with_string(&mut text, SIZE).into_drawing_area()).map_err(failed)?;
+        chart.draw(SVGBackend::with_string(&mut text, SIZE).into_drawing_area()).map_err(failed)?;
         std::fs::write(pending.path(), text).map_err(|why| Error::output(path, why))?;
     } else {
         // The bitmap backend takes the format from the ending of the name, and a pending file has no such ending.
         let mut pixels = vec![255; 3 * SIZE.0 as usize * SIZE.1 as usize];
         let area = BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area();
-        picture.draw(area).map_err(failed)?;
+        chart.draw(area).map_err(failed)?;
         let file = std::fs::File::create(pending.path()).map_err(|why| Error::output(path, why))?;
         write_png(file, &pixels).map_err(|why| Error::output(path, why))?;
     }
@@ -71,16 +88,4 @@ fn write_png(file: std::fs::File, pixels: &[u8]) -> std::result::Result<(), png:
     let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), SIZE.0, SIZE.1);
     encoder.set_color(png::ColorType::Rgb);
     encoder.write_header()?.write_image_data(pixels)
-}
-
-/// A square of 9 x 9 pixels.
-pub fn square(at: (i32, i32), style: ShapeStyle) -> plotters::element::Rectangle<(i32, i32)> {
-    plotters::element::Rectangle::new([(at.0 - 4, at.1 - 4), (at.0 + 4, at.1 + 4)], style)
-}
-
-/// Whole decades around positive numbers.
-pub fn decades(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
-    let (low, high) = (low.log10().floor(), high.log10().ceil());
-    (10_f64.powf(low), 10_f64.powf(if high > low { high } else { low + 1.0 }))
 }

@@ -1,11 +1,9 @@
 //! Arguments that several subcommands share.
 
-use super::threads::start_threads;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::problem::Files;
-use crate::run::Folder;
 use crate::scene::Scene;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The scene of a command, with its overrides.
 #[derive(Debug, clap::Args)]
@@ -40,42 +38,4 @@ impl FileArgs {
     pub fn files(&self) -> Files {
         Files { mesh: self.mesh.clone(), cloud: self.cloud.clone() }
     }
-}
-
-/// Where a run's results go, and on how many threads it runs.
-#[derive(Debug, clap::Args)]
-pub struct RunArgs {
-    /// Folder for the results [default: runs/<scene name>]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Replace results of an earlier run
-    #[arg(long)]
-    pub force: bool,
-    /// Threads [default: all processors]; the results do not depend on it
-    #[arg(long, value_name = "N")]
-    pub threads: Option<usize>,
-    /// Instruction set: avx512, avx2 or portable [default: the widest of this processor]; results differ in the last digits
-    #[arg(long, value_name = "NAME")]
-    pub kernel: Option<String>,
-}
-
-impl RunArgs {
-    /// The folder, `runs/<scene name>` by default.
-    pub fn folder(&self, scene: &Scene) -> Folder {
-        let default = || Path::new("runs").join(scene.name());
-        Folder::new(&self.out.clone().unwrap_or_else(default))
-    }
-
-    /// Starts the threads.
-    pub fn start_threads(&self) -> Result<()> {
-        self.threads.map_or(Ok(()), start_threads)
-    }
-}
-
-/// Refuses to write over a file unless `force`.
-pub fn keep(path: &Path, force: bool) -> Result<()> {
-    if path.exists() && !force {
-        return Err(Error::input(format!("{} exists", path.display()), "give --force to replace it, or another --out"));
-    }
-    Ok(())
 }

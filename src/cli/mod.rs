@@ -1,12 +1,16 @@
-//! The program: one file a subcommand, arguments and `run`.
+//! The program: one file or folder a subcommand, arguments and `run`.
 
 mod args;
 mod bench;
+mod command;
 mod export;
 mod interrupt;
 mod mesh;
+mod output;
+mod pipeline;
 mod preprocess;
 mod print;
+mod process;
 mod progress;
 mod regrid;
 mod report;
@@ -18,9 +22,9 @@ mod study;
 mod summary;
 mod threads;
 
-use crate::error::Result;
-use clap::{Parser, Subcommand};
-use std::process::ExitCode;
+pub use process::{main, run};
+
+use clap::Parser;
 
 const AFTER_HELP: &str = "\
 All in one go:
@@ -40,79 +44,5 @@ Exit codes: 0 done, 2 bad input, 3 the run lost stability, 4 interrupted and sav
 #[command(version, about, after_help = AFTER_HELP, infer_subcommands = false)]
 pub struct Cli {
     #[command(subcommand)]
-    command: Command,
-}
-
-// Parsed once: its size costs nothing.
-#[allow(clippy::large_enum_variant)]
-#[derive(Debug, Subcommand)]
-enum Command {
-    /// Import, make or inspect a mesh of quadrilaterals
-    Mesh(mesh::Args),
-    /// Put material points into the cells of a mesh
-    Seed(seed::Args),
-    /// Compute and store all matrices, and say what the run will cost
-    Preprocess(preprocess::Args),
-    /// Step the conservation laws, from stored files where they are given
-    Solve(solve::Args),
-    /// Run a scene: mesh, seed, preprocess and solve in one go
-    Run(run::Args),
-    /// Show what accuracy costs in time: methods, degrees and meshes on one problem
-    Study(study::Args),
-    /// Tell how perturbations of a state grow: spectrum of the linearised step of a patch or a small body
-    Stability(stability::Args),
-    /// Measure the speed of the step against the peaks of this machine
-    Bench(bench::Args),
-    /// Bring a stopped run to another mesh
-    Regrid(regrid::Args),
-    /// Write a run's snapshots for ParaView, meshio and DOLFINx
-    Export(export::Args),
-}
-
-/// Parses the command line of the process and runs it; the message of an error goes to standard error.
-pub fn main() -> ExitCode {
-    let outcome = match Cli::try_parse() {
-        Ok(cli) => run(cli),
-        // Help, the version, or a wrong argument, in clap's words and with its exit code, 0 or 2.
-        Err(said) => {
-            print::printed(said.print());
-            match print::all_printed() {
-                Ok(()) => return ExitCode::from(u8::try_from(said.exit_code()).unwrap_or(2)),
-                // Where a message on standard error is lost, the code of the error itself stands.
-                Err(_) if said.use_stderr() => return ExitCode::from(2),
-                Err(error) => Err(error),
-            }
-        }
-    };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // Nobody may read along: the exit code stands.
-            print::complain(&error);
-            ExitCode::from(error.exit_code())
-        }
-    }
-}
-
-/// Runs a parsed command line.
-///
-/// # Errors
-/// The one message for the user; its exit code is [`crate::Error::exit_code`].
-pub fn run(cli: Cli) -> Result<()> {
-    command(cli).and_then(|()| print::all_printed())
-}
-
-fn command(cli: Cli) -> Result<()> {
-    match cli.command {
-        Command::Mesh(args) => mesh::run(&args),
-        Command::Seed(args) => seed::run(&args),
-        Command::Preprocess(args) => preprocess::run(&args),
-        Command::Solve(args) => solve::run(&args),
-        Command::Run(args) => run::run(&args),
-        Command::Study(args) => study::run(&args),
-        Command::Stability(args) => stability::run(&args),
-        Command::Bench(args) => bench::run(&args),
-        Command::Regrid(args) => regrid::run(&args),
-        Command::Export(args) => export::run(&args),
-    }
+    command: command::Command,
 }

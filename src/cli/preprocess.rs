@@ -1,6 +1,7 @@
 //! `dgmpm preprocess`: all matrices, and what the run will cost.
 
-use super::args::{FileArgs, SceneArgs, keep};
+use super::args::{FileArgs, SceneArgs};
+use super::output::keep;
 use super::print::say;
 use super::report::report;
 use crate::error::Result;

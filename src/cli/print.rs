@@ -2,6 +2,7 @@
 //! are files, and the exit code says how it went. Any other reason why nothing can be printed is an error at the end.
 
 use crate::error::{Error, Result};
+use crate::format::Row;
 use std::io::{ErrorKind, Write};
 use std::sync::{Mutex, PoisonError};
 
@@ -50,26 +51,7 @@ pub fn complain(error: &Error) {
 }
 
 /// Prints a table of two columns.
-pub fn table(rows: &[(String, String)]) {
+pub fn table(rows: &[Row]) {
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
     rows.iter().for_each(|(name, value)| say(format!("  {name:width$}  {value}")));
-}
-
-/// A row of [`table`].
-pub fn row(name: impl Into<String>, value: impl Into<String>) -> (String, String) {
-    (name.into(), value.into())
-}
-
-/// Bytes as MiB.
-pub fn mebibytes(bytes: usize) -> String {
-    format!("{:.1} MiB", bytes as f64 / (1024.0 * 1024.0))
-}
-
-/// Seconds, as people say them.
-pub fn seconds(s: f64) -> String {
-    match s {
-        s if s < 120.0 => format!("{s:.1} s"),
-        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
 }

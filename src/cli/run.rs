@@ -1,7 +1,8 @@
 //! `dgmpm run`: all stages in one go.
 
-use super::args::{RunArgs, SceneArgs};
-use super::solve;
+use super::args::SceneArgs;
+use super::output::RunArgs;
+use super::pipeline;
 use crate::error::Result;
 use crate::problem::Files;
 
@@ -16,5 +17,5 @@ pub struct Args {
 
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
-    solve::all(&args.scene, &Files::default(), None, &args.run)
+    pipeline::run(&args.scene, &Files::default(), None, &args.run)
 }

@@ -1,6 +1,7 @@
 //! `dgmpm seed`: material points into the cells of a mesh.
 
-use super::args::{SceneArgs, keep};
+use super::args::SceneArgs;
+use super::output::keep;
 use super::print::say;
 use crate::cloud::Cloud;
 use crate::error::Result;

@@ -2,11 +2,13 @@
 
 pub mod body;
 pub mod locate;
+mod near;
 pub mod seed;
 mod walk;
 
 pub use body::Pattern;
 pub use locate::{Locator, Outside, from_points};
+pub use near::{Tree, trees};
 pub use seed::{Layout, default_layout, seed, seed_by};
 
 /// Material points: for each cell a run of points with their parent coordinates.

@@ -8,12 +8,12 @@
 use std::path::Path;
 
 use super::certificates::{self, Columns};
-use super::grid::{Field, Kind, bilinear};
+use super::grid::{Field, Kind};
 use super::hash;
 use super::store::{ArrayRef, Format, Store, write_arrays};
 use crate::cloud::Cloud;
 use crate::error::{Error, Result};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, map};
 use crate::operators::Certificate;
 
 /// The format of `cloud.h5`.
@@ -44,7 +44,7 @@ pub fn write_with(path: &Path, cloud: &Cloud, mesh: &Mesh, more: &More) -> Resul
         return Err(Error::output(path, what));
     }
     let positions: Vec<[f64; 2]> = (0..mesh.cells.len())
-        .flat_map(|c| cloud.of(c).iter().map(move |&xi| bilinear(mesh.cells[c].map(|n| mesh.nodes[n]), xi)))
+        .flat_map(|c| cloud.of(c).iter().map(move |&xi| map::position(&mesh.corners(c), xi)))
         .collect();
     let mut arrays = vec![
         ("first", vec![cloud.first.len()], ArrayRef::Index(&cloud.first)),
@@ -64,12 +64,6 @@ pub fn write_with(path: &Path, cloud: &Cloud, mesh: &Mesh, more: &More) -> Resul
     write_arrays(path, FORMAT, &[("mesh", hash::of_mesh(mesh))], &arrays)
 }
 
-/// Reads a cloud and the fingerprint of its mesh.
-pub fn read_cloud(path: &Path) -> Result<(Cloud, String)> {
-    let mut store = Store::read(path, FORMAT)?;
-    Ok((read_places(&mut store)?, store.attribute("mesh")?.to_owned()))
-}
-
 fn read_places(store: &mut Store) -> Result<Cloud> {
     let xi = store.reals("xi", &[2])?;
     let cloud = Cloud { first: store.indices("first", &[])?, xi: xi.as_chunks::<2>().0.to_vec() };
@@ -77,11 +71,6 @@ fn read_places(store: &mut Store) -> Result<Cloud> {
         Some(what) => Err(store.error(what)),
         None => Ok(cloud),
     }
-}
-
-/// Reads a cloud that must belong to this mesh.
-pub fn read_cloud_of(path: &Path, mesh: &Mesh) -> Result<Cloud> {
-    Ok(read_with(path, mesh)?.0)
 }
 
 /// Reads a cloud that must belong to this mesh, with all further parts of the file.

@@ -1,7 +1,7 @@
 //! The output model, independent of the solver: fields on a grid of high-order quadrilaterals, and on points.
 
 use crate::error::{Error, Result};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, map};
 
 /// How many components a field has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,7 +74,7 @@ impl HighOrderGrid {
         let nodes = lagrange_quad_nodes(degree);
         let points = mesh.cells.iter().flat_map(|cell| {
             let corners = cell.map(|n| mesh.nodes[n]);
-            nodes.iter().map(move |&xi| bilinear(corners, xi)).map(|[x, y]| [x, y, 0.0])
+            nodes.iter().map(move |&xi| map::position(&corners, xi)).map(|[x, y]| [x, y, 0.0])
         });
         Self { degree, points: points.collect(), point_fields: Vec::new(), cell_fields: Vec::new() }
     }
@@ -145,10 +145,4 @@ pub fn lagrange_quad_lattice(n: usize) -> Vec<[usize; 2]> {
 pub fn lagrange_quad_nodes(degree: usize) -> Vec<[f64; 2]> {
     let n = degree.max(1);
     lagrange_quad_lattice(n).into_iter().map(|ij| ij.map(|i| i as f64 / n as f64)).collect()
-}
-
-/// The bilinear map of a cell with these corners.
-pub(super) fn bilinear(x: [[f64; 2]; 4], [r, s]: [f64; 2]) -> [f64; 2] {
-    let weights = [(1.0 - r) * (1.0 - s), r * (1.0 - s), r * s, (1.0 - r) * s];
-    [0, 1].map(|i| (0..4).map(|k| weights[k] * x[k][i]).sum())
 }

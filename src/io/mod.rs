@@ -29,6 +29,18 @@ use crate::error::Result;
 use crate::mesh::Mesh;
 use std::path::Path;
 
+/// Writes a mesh: `.msh` for Gmsh, else HDF5.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<()> {
+    if path.extension().is_some_and(|ending| ending == "msh") {
+        gmsh::write(mesh, path)
+    } else {
+        mesh_file::write_mesh(path, mesh)
+    }
+}
+
 /// Reads a mesh: `.h5` as written by `dgmpm mesh`, else Gmsh.
 ///
 /// # Errors

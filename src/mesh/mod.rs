@@ -10,6 +10,7 @@ pub mod periodic;
 pub mod quality;
 mod refine;
 pub mod structured;
+mod summary;
 
 pub use error::Error;
 pub use faces::links;

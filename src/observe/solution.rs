@@ -124,11 +124,6 @@ impl<'a> Solution<'a> {
         self.components > UNKNOWNS
     }
 
-    /// Whether a law has memory.
-    pub fn has_memory(&self) -> bool {
-        self.memory.is_some()
-    }
-
     /// The law of a cell.
     pub fn law(&self, cell: usize) -> &Law {
         &self.laws[self.material[cell]]

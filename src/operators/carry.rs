@@ -12,12 +12,10 @@
 
 use super::certificate::{Certificate, Class, of_points};
 use super::{Line, Sampling};
-use crate::cloud::Cloud;
+use crate::cloud::{self, Cloud, Tree};
 use crate::error::Error;
 use crate::mesh::{Mesh, map};
 use rayon::prelude::*;
-use rstar::RTree;
-use rstar::primitives::GeomWithData;
 
 /// The limits for the points of a cell. Beyond them virtual points replace the points.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -166,9 +164,6 @@ pub fn carry(mesh: &Mesh, line: &Line, cloud: &Cloud, limits: &Limits, memory: &
     Ok(out)
 }
 
-/// A point of the given cloud, with its number.
-pub(super) type Tree = RTree<GeomWithData<[f64; 2], usize>>;
-
 /// For each group of cells that has one of the `poor` cells (their points cannot carry Q_N), the points of the group.
 ///
 /// # Errors
@@ -178,26 +173,21 @@ pub(super) fn trees(mesh: &Mesh, cloud: &Cloud, poor: &[usize]) -> Result<Vec<Op
     for &cell in poor {
         asked[mesh.cell_group[cell]].get_or_insert(cell);
     }
-    let mut points = vec![vec![]; mesh.groups.len()];
-    for cell in (0..mesh.cells.len()).filter(|&cell| asked[mesh.cell_group[cell]].is_some()) {
-        let corners = mesh.corners(cell);
-        let numbered = cloud.of(cell).iter().zip(cloud.first[cell]..);
-        points[mesh.cell_group[cell]]
-            .extend(numbered.map(|(&xi, p)| GeomWithData::new(map::position(&corners, xi), p)));
+    let is_asked: Vec<bool> = asked.iter().map(Option::is_some).collect();
+    let trees = cloud::trees(mesh, cloud, &mesh.cell_group, &is_asked);
+    for (group, tree) in trees.iter().enumerate() {
+        if let (Some(cell), Some(0)) = (asked[group], tree.as_ref().map(Tree::size)) {
+            return Err(Error::input(
+                format!(
+                    "the group \"{}\" (cell {} and others) holds no material point",
+                    mesh.groups[group],
+                    mesh.number(cell)
+                ),
+                "put points into each group of cells: its internal variables come from its points",
+            ));
+        }
     }
-    let tree = |(group, points): (usize, Vec<_>)| match asked[group] {
-        None => Ok(None),
-        Some(cell) if points.is_empty() => Err(Error::input(
-            format!(
-                "the group \"{}\" (cell {} and others) holds no material point",
-                mesh.groups[group],
-                mesh.number(cell)
-            ),
-            "put points into each group of cells: its internal variables come from its points",
-        )),
-        Some(_) => Ok(Some(RTree::bulk_load(points))),
-    };
-    points.into_iter().enumerate().map(tree).collect()
+    Ok(trees)
 }
 
 /// The number of the nearest point; the first of several that are equally near.

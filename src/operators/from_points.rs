@@ -3,11 +3,11 @@
 //! With N+2 points per direction the order is kept (design section 8). Momentum and mean F are those of the fit. They
 //! are not exactly those of the body that the points came from, because its grid is not known.
 
-use super::carry::{Limits, Tree, trees};
+use super::carry::{Limits, trees};
 use super::certificate::of_points;
 use super::{Line, Matrix, PointMatrices, Sampling};
 use crate::basis::mls::patch;
-use crate::cloud::Cloud;
+use crate::cloud::{Cloud, Tree};
 use crate::error::Error;
 use crate::mesh::{Mesh, map};
 use rayon::prelude::*;

@@ -29,6 +29,7 @@ pub use stored::Stored;
 use crate::basis::Lagrange;
 use crate::error::Error;
 use crate::mesh::{FACES, Link, Mesh};
+use crate::quadrature::legendre;
 
 /// Everything that the step needs of mesh and cloud.
 #[derive(Debug, Clone, PartialEq)]
@@ -143,7 +144,7 @@ impl Line {
         let highest = |k: usize| match degree {
             0 => 0.0,
             _ if degree % 2 == 1 => 0.0,
-            _ => w[k] * legendre(degree, 2.0 * basis.nodes[k] - 1.0),
+            _ => w[k] * legendre(2.0 * basis.nodes[k] - 1.0).nth(degree).map_or(0.0, |(p, _)| p),
         };
         let held = [0, 1].map(|end: usize| (0..m).map(|k| ends[end][k] - highest(k)).collect::<Vec<f64>>());
         let held_lift = [0, 1].map(|end: usize| held[end].iter().zip(w).map(|(l, w)| l / w).collect());
@@ -154,15 +155,6 @@ impl Line {
     pub fn nodes(&self) -> Vec<[f64; 2]> {
         (0..self.m * self.m).map(|a| self.basis.node_2d(a)).collect()
     }
-}
-
-/// Legendre's polynomial P_n on [-1, 1].
-fn legendre(n: usize, x: f64) -> f64 {
-    let (mut before, mut now) = (0.0, 1.0);
-    for k in 0..n {
-        (before, now) = (now, ((2 * k + 1) as f64 * x * now - k as f64 * before) / (k + 1) as f64);
-    }
-    now
 }
 
 #[cfg(test)]

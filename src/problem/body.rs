@@ -150,9 +150,4 @@ impl Body {
     pub fn places(&self, scene: &Scene) -> Cow<'_, Cloud> {
         scene.places(&self.cloud, &self.material)
     }
-
-    /// min_e h_e, m: the time step is proportional to it.
-    pub fn smallest_h(&self) -> f64 {
-        self.mesh.smallest_h()
-    }
 }

@@ -1,14 +1,28 @@
 //! The input of a run in its folder, so that the folder can be moved and run again.
 
-use super::{Files, Problem};
-use crate::error::Result;
+use super::{Body, Files, Problem};
+use crate::error::{Error, Place, Result};
 use crate::io::cloud_file::{self, More};
 use crate::io::{mesh_file, pending};
 use crate::observe::{Solution, export};
 use crate::operators::Certificate;
 use crate::registry::grids::copy;
 use crate::run::Folder;
+use crate::scene::Scene;
 use std::path::Path;
+
+/// Checks what a run of the scene will ask for later: the places of its lines, its later grids and a file of `operators`.
+///
+/// # Errors
+/// Bad input, with its place.
+pub fn check_run(scene: &Scene, body: &Body, operators: Option<&Path>) -> Result<()> {
+    scene.check_lines(&body.mesh)?;
+    scene.check_regrids(&body.mesh)?;
+    match operators.filter(|path| !path.exists()) {
+        Some(missing) => Err(Error::at(Place::file(missing), "there is no such file", "make it by `dgmpm preprocess`")),
+        None => Ok(()),
+    }
+}
 
 /// Writes scene, mesh and cloud into a run folder. Paths of the scene are replaced by those of the folder. The initial state is
 /// written at the points where the scene takes it from there.

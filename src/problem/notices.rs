@@ -8,7 +8,7 @@ use crate::mesh::{BoundaryEdge, Link, Mesh};
 use crate::operators::{Blocks, Neighbour};
 use crate::scene::Scene;
 use crate::state::State;
-use crate::step::{Scheme, Survey};
+use crate::step::{Scheme, Survey, cfl};
 
 /// Parts that a list names before it only counts.
 const NAMED: usize = 4;
@@ -48,6 +48,16 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
         ));
     }
     all
+}
+
+/// The notice on ADER of a degree that grows at any step; none for other methods and degrees.
+pub fn of_growth(problem: &Problem, cost: &Cost) -> Option<String> {
+    let degree = problem.scene.scheme.degree;
+    let growth = cfl::growth(&problem.scheme.method, degree)?;
+    Some(format!(
+        "ADER of degree {degree} grows weakly at any dt: {growth:.0e} a step, a factor of {:.3} over this run",
+        (growth * cost.steps).exp()
+    ))
 }
 
 /// The cells behind the faces of a cell.

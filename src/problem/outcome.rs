@@ -1,7 +1,7 @@
 //! What a regrid did: in words, and as a row of `regrid.csv`.
 
 use super::Body;
-use super::rebuild::{Moved, scale};
+use super::moved::{Moved, scale};
 use crate::state::UNKNOWNS;
 use crate::step::Totals;
 use std::time::Instant;

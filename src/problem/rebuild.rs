@@ -2,6 +2,7 @@
 //! and the state is brought over; time and step go on. Where grid and points are the same nothing is touched, so that no bit
 //! changes.
 
+use super::moved::{Moved, scale};
 use super::outcome::{Clock, Outcome, columns};
 use super::outputs::schedule_of;
 use super::{Body, Problem, Recent};
@@ -25,20 +26,6 @@ use rstar::{RTree, primitives::GeomWithData};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// A problem on another grid.
-pub struct Moved {
-    /// Mesh and points.
-    pub body: Body,
-    /// The scheme.
-    pub scheme: Scheme,
-    /// The state.
-    pub state: State,
-    /// How the fields came over.
-    pub transfer: Transfer,
-    /// What became of the points.
-    pub placed: Placed,
-}
 
 /// The rules of a scene, and what has come of them.
 pub struct Regrids<'a> {
@@ -315,14 +302,4 @@ fn deformation(scheme: &Scheme, state: &State, places: &Cloud) -> Vec<[f64; 4]> 
         places.of(cell).iter().map(of_point).collect::<Vec<_>>()
     };
     cells.chunks_exact(state.components * n).enumerate().flat_map(at).collect()
-}
-
-/// The weights of the standard error: |F|^2 + |v|^2 / c_p^2 with the speed of the unstrained material.
-pub(super) fn scale(scheme: &Scheme) -> Vec<[f64; 8]> {
-    let of = |law: &crate::step::Law| {
-        let [c_p, _] = law.largest_speeds([1.0, 0.0, 0.0, 1.0], &law.virgin());
-        let p = (law.density() * c_p).powi(-2);
-        [1.0, 1.0, 1.0, 1.0, p, p, 0.0, 0.0]
-    };
-    scheme.laws.iter().map(of).collect()
 }

@@ -3,6 +3,7 @@
 use super::Problem;
 use crate::error::Result;
 use crate::exact::{Errors, Exact, errors};
+use crate::format::{Row, row};
 use crate::run::{Folder, Report, norms};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -23,6 +24,20 @@ impl<'a> Outcome<'a> {
         let Problem { scene, body, scheme, state, .. } = problem;
         let of = |exact: Arc<dyn Exact>| errors(exact.as_ref(), &body.mesh, scheme, state, &body.material);
         Self { problem, report, errors: scene.build_exact().map(of) }
+    }
+
+    /// What the run cost, what became of energy and momentum, and the errors, as rows of a table.
+    pub fn rows(&self) -> Vec<Row> {
+        let mut rows = self.report.rows();
+        if let Some(errors) = &self.errors {
+            for (name, norms) in errors.fields() {
+                let text = format!("L1 {:.4e}, L2 {:.4e}, Linf {:.4e}", norms.l1, norms.l2, norms.linf);
+                rows.push(row(format!("error of {name}"), text));
+            }
+            rows.push(row("standard error", format!("{:.4e}", errors.standard)));
+        }
+        rows.push(row("instruction set", format!("{:?}", self.problem.scheme.kernel)));
+        rows
     }
 
     /// Writes `summary.json`. `status`: done, unstable, interrupted or failed; `loss`: what is known of a loss of stability.

@@ -2,14 +2,12 @@
 //! them. New points take the internal variables of the nearest old point of their material. Nothing is interpolated.
 
 use super::Grid;
-use crate::cloud::{Cloud, Locator, locate::on_lattice};
+use crate::cloud::{Cloud, Locator, locate::on_lattice, trees};
 use crate::error::Error;
 use crate::mesh::{Mesh, map};
 use crate::operators::certificate::{Certificate, certify};
 use crate::operators::{Limits, Line, Sampling};
 use rayon::prelude::*;
-use rstar::RTree;
-use rstar::primitives::GeomWithData;
 
 names! {
     /// What becomes of the points of new cells.
@@ -218,11 +216,12 @@ fn enrich(seats: &mut [Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand
 /// For each point the old point that it is, or the nearest old point.
 fn sources(old: &Grid, cloud: &Cloud, new: &Grid, seats: &[Vec<Seat>]) -> Result<Vec<usize>, Error> {
     let is_new = |seats: &Vec<Seat>| seats.iter().any(|seat| seat.old.is_none());
-    let trees = if seats.iter().any(is_new) { trees(old, cloud) } else { vec![] };
+    let asked = vec![seats.iter().any(is_new); old.material.iter().max().map_or(0, |last| last + 1)];
+    let trees = trees(old.mesh, cloud, old.material, &asked);
     let of = |cell: usize| -> Result<Vec<usize>, Error> {
         let corners = new.mesh.corners(cell);
         let source = |seat: &Seat| {
-            let near = || trees.get(new.material[cell])?.nearest_neighbor(map::position(&corners, seat.xi));
+            let near = || trees.get(new.material[cell])?.as_ref()?.nearest_neighbor(map::position(&corners, seat.xi));
             seat.old.or_else(|| near().map(|point| point.data)).ok_or_else(|| {
                 let what = format!("cell {} has a material that no old point has", new.mesh.number(cell));
                 Error::input(what, "give a mesh with the groups of the old one")
@@ -232,17 +231,6 @@ fn sources(old: &Grid, cloud: &Cloud, new: &Grid, seats: &[Vec<Seat>]) -> Result
     };
     let all = (0..seats.len()).into_par_iter().map(of).collect::<Result<Vec<_>, Error>>()?;
     Ok(all.concat())
-}
-
-/// The old points of each material.
-fn trees(old: &Grid, cloud: &Cloud) -> Vec<RTree<GeomWithData<[f64; 2], usize>>> {
-    let mut points = vec![vec![]; old.material.iter().max().map_or(0, |last| last + 1)];
-    for cell in 0..old.mesh.cells.len() {
-        let corners = old.mesh.corners(cell);
-        let numbered = cloud.of(cell).iter().zip(cloud.first[cell]..);
-        points[old.material[cell]].extend(numbered.map(|(&xi, k)| GeomWithData::new(map::position(&corners, xi), k)));
-    }
-    points.into_iter().map(RTree::bulk_load).collect()
 }
 
 /// Internal variables of the new points: cells in the order of the mesh, points in the order of the cloud. `internal`

@@ -4,6 +4,7 @@ mod folder;
 mod kept;
 mod norms;
 mod report;
+mod rows;
 mod watch;
 
 pub use folder::Folder;
@@ -135,7 +136,7 @@ impl Run<'_, '_> {
         }
         report.start(self.scheme, motion, self.settings.watch);
         let mut kept = Kept::new(&motion.state, &motion.survey);
-        let h = self.smallest_h();
+        let h = self.mesh.smallest_h();
         while motion.state.time < self.settings.end {
             let time = motion.state.time;
             let stop = pause.stop(time).unwrap_or(f64::INFINITY).min(self.next_stop(time));
@@ -166,13 +167,6 @@ impl Run<'_, '_> {
         report.see(&last);
         self.observe(motion, report.balance.as_ref(), 0.0)?;
         Ok(End::Done)
-    }
-
-    /// min_e h_e, m.
-    fn smallest_h(&self) -> f64 {
-        let operators = &self.scheme.operators;
-        let blocks = operators.blocks.count.iter().zip(operators.geometry.h());
-        blocks.flat_map(|(&count, h)| &h.0[..count]).fold(f64::INFINITY, |a, b| a.min(*b))
     }
 
     /// The time that a step must not pass: the end, or an exact output before it.

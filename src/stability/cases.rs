@@ -3,6 +3,9 @@
 use super::problem::{Domain, Pattern, Setup};
 use crate::error::{Error, Result};
 
+/// The layout of a method that has no points.
+pub(super) const NO_LAYOUT: &str = "-";
+
 /// What a command asks for; a list that is empty leaves the scene as it is.
 #[derive(Debug, Clone)]
 pub struct Plan {
@@ -12,12 +15,8 @@ pub struct Plan {
     pub sets: Vec<String>,
     /// Keys and their values: each list multiplies the cases.
     pub lists: Vec<(String, Vec<String>)>,
-    /// Ratio of two Young's moduli; 1: one material.
-    pub contrast: f64,
-    /// Where the stiffer cells are.
-    pub pattern: Pattern,
-    /// dt c / h in place of what the scene says.
-    pub courant: Option<f64>,
+    /// Where the stiffer cells are, if there are two materials; none: as a checkerboard.
+    pub pattern: Option<Pattern>,
     /// Whether the limit dt -> 0 is looked at.
     pub semi_discrete: bool,
 }
@@ -32,17 +31,19 @@ pub struct Case {
 }
 
 impl Plan {
-    /// All cases, the last list running fastest.
+    /// All cases, the last list running fastest. A layout is left out where the method has no points, and of the cases that
+    /// are the same then only the first one stays.
     ///
     /// # Errors
-    /// A value of a key that is no number where one is needed.
+    /// A value of a key that is no number where one is needed; keys that do not go together.
     pub fn cases(&self) -> Result<Vec<Case>> {
+        self.check()?;
         let setup = Setup {
             domain: self.domain.clone(),
             sets: self.sets.clone(),
-            contrast: self.contrast,
-            pattern: self.pattern,
-            courant: self.courant,
+            contrast: 1.0,
+            pattern: self.pattern.unwrap_or(Pattern::Checkerboard),
+            courant: None,
             semi_discrete: self.semi_discrete,
         };
         let mut cases = vec![Case { setup, labels: vec![] }];
@@ -58,14 +59,60 @@ impl Plan {
             }
             cases = more;
         }
+        if self.has("layout") {
+            cases.iter_mut().try_for_each(Case::without_idle_layout)?;
+            let all = std::mem::take(&mut cases);
+            for case in all {
+                if cases.iter().all(|other| other.labels != case.labels) {
+                    cases.push(case);
+                }
+            }
+        }
         Ok(cases)
     }
+
+    fn has(&self, key: &str) -> bool {
+        self.lists.iter().any(|(known, values)| known == key && !values.is_empty())
+    }
+
+    /// Refuses what would have no effect.
+    fn check(&self) -> Result<()> {
+        let steps = ["dt", "safety"].into_iter().find(|key| self.semi_discrete && self.has(key));
+        if let Some(key) = steps {
+            return Err(no_step(&format!("--{key}")));
+        }
+        if self.pattern.is_some() && !self.has("contrast") {
+            let what = "--pattern says where the stiffer material is, and there is one material";
+            return Err(Error::input(what, "give its --contrast, or leave out --pattern"));
+        }
+        if matches!(self.domain, Domain::Scene(_)) && self.has("contrast") {
+            let what = "a contrast makes two materials of a patch or a --body, and a scene has its own";
+            return Err(Error::input(what, "leave out contrast, and give the [[material]] of the scene"));
+        }
+        Ok(())
+    }
+}
+
+/// The error of a question about a step in the limit dt -> 0.
+pub(super) fn no_step(option: &str) -> Error {
+    let what = format!("{option} asks about a step, and --semi-discrete is the limit dt -> 0, which has none");
+    Error::input(what, format!("leave out --semi-discrete, or {option}"))
 }
 
 impl Case {
     /// The number of a label.
     pub fn number(&self, label: usize) -> Option<f64> {
         self.labels[label].1.parse().ok()
+    }
+
+    /// Without the layout of a method that has no points.
+    fn without_idle_layout(&mut self) -> Result<()> {
+        if self.setup.has_points()? {
+            return Ok(());
+        }
+        self.setup.sets.retain(|set| !set.starts_with("cloud.layout="));
+        self.labels.iter_mut().filter(|(key, _)| key == "layout").for_each(|(_, value)| *value = NO_LAYOUT.to_owned());
+        Ok(())
     }
 
     /// Gives a key a value: a short name, or the path of a key of the scene.
@@ -187,8 +234,7 @@ mod tests {
     fn lists_multiply_and_the_last_one_of_numbers_is_the_axis_of_a_plot() {
         let lists = [("curl", "off,lcf"), ("poisson", ".3,.45"), ("flux", "rusanov,acoustic")];
         let lists = lists.map(|(key, list)| (key.to_owned(), values(list).unwrap())).to_vec();
-        let (domain, sets, pattern) = (Domain::Patch, vec![], Pattern::Halves);
-        let mut plan = Plan { domain, sets, lists, contrast: 1.0, pattern, courant: None, semi_discrete: true };
+        let mut plan = Plan { domain: Domain::Patch, sets: vec![], lists, pattern: None, semi_discrete: true };
         let cases = plan.cases().unwrap();
         assert_eq!((cases.len(), axis(&cases).unwrap()), (8, 1));
         assert_eq!(cases[1].setup.sets, ["curl.control=off", "material.0.poisson=0.3", "scheme.flux=acoustic"]);

@@ -2,6 +2,7 @@
 
 use super::angles::{self, At};
 use super::assemble::{Assembler, Differences, Operator};
+use super::cases::no_step;
 use super::energy::Energy;
 use super::norms;
 use super::operator::Rate;
@@ -89,8 +90,13 @@ pub struct Measured {
 /// Builds and measures a case.
 ///
 /// # Errors
-/// Bad input; a body that is too large.
+/// Bad input; a body that is too large; a question about a step in the limit dt -> 0.
 pub fn measure(setup: &Setup, questions: Questions) -> Result<Measured> {
+    match setup.semi_discrete {
+        true if setup.courant.is_some() => return Err(no_step("--dt")),
+        true if questions.limit => return Err(no_step("--limit")),
+        _ => {}
+    }
     let problem = setup.build()?;
     let cells = problem.columns().len();
     let unknowns = cells * problem.per_cell();
@@ -106,7 +112,7 @@ pub fn measure(setup: &Setup, questions: Questions) -> Result<Measured> {
     let how = Assembler::new(&problem).best(operator)?;
     let rate = Rate::new(&problem, &how, operator)?;
     let At { growth, theta } = angles::worst(&rate, questions.angles)?;
-    let limit = match questions.limit && !setup.semi_discrete {
+    let limit = match questions.limit {
         true => Some(Limit { problem: &problem, how, angles: questions.angles }.find(theta)?),
         false => None,
     };

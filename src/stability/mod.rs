@@ -18,4 +18,4 @@ pub use cases::{Case, Plan, axis, values};
 pub use energy::Energy;
 pub use measure::{Measured, Names, Questions, measure};
 pub use problem::{Domain, Pattern, Problem, Setup};
-pub use table::{Row, chart, csv, lines};
+pub use table::{Row, chart, csv, lines, rows};

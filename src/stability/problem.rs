@@ -15,13 +15,14 @@ const SIDES: [&str; 4] = ["left", "right", "bottom", "top"];
 /// The groups of cells of the two materials of a [`Setup`] with contrast.
 const GROUPS: [&str; 2] = ["soft", "stiff"];
 
-/// Which cells of a patch or a body are the stiffer ones, where there are two materials.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pattern {
-    /// Every other cell, by rows and columns.
-    Checkerboard,
-    /// Of a body the right half; of a patch every other column.
-    Halves,
+names! {
+    /// Which cells of a patch or a body are the stiffer ones, where there are two materials.
+    Pattern {
+        /// Every other cell, by rows and columns.
+        Checkerboard = "checkerboard",
+        /// Of a body the right half; of a patch every other column.
+        Halves = "halves",
+    }
 }
 
 /// The body.
@@ -116,6 +117,14 @@ impl Setup {
         let mesh = body.mesh;
         let state = without_displacement(&scheme, scene.initial_state(&mesh, &scheme)?);
         Problem::new(mesh, scheme, state, scene, (unit, units), (courant, known_limit))
+    }
+
+    /// Whether its method has material points.
+    ///
+    /// # Errors
+    /// Bad input, as for a run of the scene.
+    pub(super) fn has_points(&self) -> Result<bool> {
+        Ok(self.scene(&self.sets)?.scheme.method.has_points())
     }
 
     /// The scene with overrides.
@@ -231,8 +240,7 @@ impl Problem {
             let what = format!("the state is no state of the law: {} in cell {}", loss.kind, mesh.number(loss.cell));
             Error::input(what, "give another deformation, or a law that is hyperbolic there")
         })?;
-        let h = crate::mesh::map::h_e;
-        let h = (0..mesh.cells.len()).map(|cell| h(&mesh.corners(cell))).fold(f64::INFINITY, f64::min);
+        let h = mesh.smallest_h();
         let speeds =
             scheme.operators.blocks.slot.iter().map(|&(block, lane)| survey.speed[block].fastest.0[lane]).collect();
         let reference = scheme.laws.iter().map(|law| law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0]);

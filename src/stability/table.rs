@@ -1,8 +1,8 @@
 //! Results as rows of a table, as CSV and as a chart.
 
-use super::cases::{self, Case};
-use super::measure::Measured;
-use crate::chart::{Chart, Line, Marker, Scale};
+use super::cases::{self, Case, NO_LAYOUT, Plan};
+use super::measure::{Measured, Questions, measure};
+use crate::chart::{Chart, Line, Marker, Scale, Stroke};
 use crate::error::Result;
 use std::f64::consts::PI;
 
@@ -18,6 +18,18 @@ pub struct Row {
     pub case: Case,
     /// The numbers.
     pub found: Measured,
+}
+
+/// Measures all cases of a plan. `plotted`: there is a list of numbers that a plot stands over.
+///
+/// # Errors
+/// Bad input; nothing to plot over, which is found before the work begins.
+pub fn rows(plan: &Plan, questions: Questions, plotted: bool) -> Result<Vec<Row>> {
+    let cases = plan.cases()?;
+    if plotted {
+        cases::axis(&cases)?;
+    }
+    cases.into_iter().map(|case| Ok(Row { found: measure(&case.setup, questions)?, case })).collect()
 }
 
 /// A column: its head, and its text in a row.
@@ -141,12 +153,19 @@ pub fn chart(rows: &[Row]) -> Result<Chart> {
     let others: Vec<usize> = (0..cases[0].labels.len()).filter(|k| *k != axis && cases::varies(&cases, *k)).collect();
     let mut lines: Vec<Line> = Vec::new();
     for row in rows {
-        let name: Vec<String> = others.iter().map(|&k| row.case.labels[k].1.clone()).collect();
+        let values = others.iter().map(|&k| &row.case.labels[k].1).filter(|value| *value != NO_LAYOUT);
+        let name: Vec<String> = values.cloned().collect();
         let name = if name.is_empty() { row.found.names.method.clone() } else { name.join(" ") };
         let point = (row.case.number(axis).unwrap_or(f64::NAN), row.found.growth);
         match lines.iter_mut().find(|line| line.name == name) {
             Some(line) => line.points.push(point),
-            None => lines.push(Line { name, colour: lines.len() + 1, marker: Marker::Circle, points: vec![point] }),
+            None => lines.push(Line {
+                name,
+                colour: lines.len() + 1,
+                marker: Marker::Circle,
+                stroke: Stroke::Full,
+                points: vec![point],
+            }),
         }
     }
     let all = || cases.iter().filter_map(|case| case.number(axis));

@@ -2,7 +2,7 @@
 
 use super::Study;
 use super::case::{Case, Series};
-use super::predict::Prediction;
+use super::record::Prediction;
 use crate::lane::LANES;
 use crate::scene;
 

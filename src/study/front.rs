@@ -1,6 +1,7 @@
 //! The cheapest settings: the Pareto front of error and seconds, and the answer in words.
 
-use super::case::{Record, Series};
+use super::case::Series;
+use super::record::Record;
 
 /// Indices of the records that no other beats in both error and CPU seconds, by falling error.
 pub fn front(records: &[Record]) -> Vec<usize> {

@@ -10,17 +10,21 @@ mod choice;
 mod front;
 mod plot;
 mod predict;
+mod record;
 mod reference;
+mod request;
 mod session;
 mod table;
 mod words;
 
-pub use case::{Case, Record, Series};
+pub use case::{Case, Series};
 pub use choice::{Aim, Choice, ranked};
 pub use front::{Answer, answers, cost, front};
 pub use plot::{Axis, plot};
-pub use predict::{Model, Prediction, Size};
+pub use predict::{Model, Size};
+pub use record::{Prediction, Record};
 pub use reference::Reference;
+pub use request::Request;
 pub use session::{Plan, Session};
 pub use table::{COLUMNS, csv, machine, markdown};
 
@@ -60,7 +64,7 @@ impl Study<'_> {
         // One mesh alone tells no rate.
         let model = self.model(&case.series).filter(|model| model.levels() > 1);
         let predicted = model.map(|model| model.at(self.size(&case)));
-        let record = case::measure(self.scene, case, &self.reference, predicted, self.repeat, self.interrupt)?;
+        let record = record::measure(self.scene, case, &self.reference, predicted, self.repeat, self.interrupt)?;
         self.records.push(record);
         // The one just pushed.
         Ok(&self.records[self.records.len() - 1])

@@ -1,6 +1,6 @@
 //! From records of a series to the seconds and the error on a finer mesh.
 
-use super::case::Record;
+use super::record::{Prediction, Record};
 use crate::lane::LANES;
 
 /// What counts of a record.
@@ -23,15 +23,6 @@ pub struct Size {
     pub h: f64,
     /// Blocks of eight cells, which the seconds of a step go with.
     pub blocks: f64,
-}
-
-/// What is expected of a run.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Prediction {
-    /// CPU seconds.
-    pub cpu: f64,
-    /// Standard error.
-    pub error: f64,
 }
 
 /// The smallest rate that is believed: a shock's is 1/2 in L2.

@@ -1,16 +1,22 @@
 //! A study from its plan to its files.
 
-use super::case::{Case, Record, Series};
+use super::case::{Case, Series};
 use super::choice::{Aim, Choice, ranked};
 use super::front::{answers, front};
 use super::plot::{Axis, plot};
-use super::table::{csv, markdown};
-use super::words::{answer, line, percent, seconds, title};
+use super::record::Record;
+use super::reference::Reference;
+use super::table::{csv, machine, markdown};
+use super::words::{answer, line, percent, title};
 use super::{SHORT, Study};
 use crate::error::{Error, Result};
+use crate::format::short_seconds;
 use crate::io::pending::write_text;
+use crate::lane::Kernel;
+use crate::scene::Scene;
 use serde_json::{Value, json};
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Settings that are tried for an aim before the study gives up.
@@ -31,20 +37,52 @@ pub struct Plan {
     pub refinements: Vec<f64>,
     /// What is asked for; none: everything is measured.
     pub aim: Option<Aim>,
+    /// Degree and refinement of the reference run, where no exact solution is known.
+    pub reference: (usize, f64),
 }
 
 /// A study under way.
 pub struct Session<'a> {
-    /// What was measured.
-    pub study: Study<'a>,
-    /// What is to be measured.
-    pub plan: Plan,
+    study: Study<'a>,
+    plan: Plan,
     /// The folder of its files.
-    pub out: PathBuf,
+    out: PathBuf,
     /// Problem, reference and machine, for the head of the table.
-    pub head: Vec<String>,
+    head: Vec<String>,
     /// Takes a line for the user.
-    pub say: &'a dyn Fn(&str),
+    say: &'a dyn Fn(&str),
+}
+
+/// Never set: the table is kept after each run, and an interrupt may simply end the program.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
+impl<'a> Session<'a> {
+    /// A study of a scene, with `repeat` runs of a short case. Its files go to the folder `out`, and lines for the user to
+    /// `say`. Where no exact solution is known, this makes the reference run.
+    ///
+    /// # Errors
+    /// Bad input; a reference run that loses stability.
+    pub fn new(
+        scene: &'a Scene,
+        plan: Plan,
+        repeat: usize,
+        out: PathBuf,
+        say: &'a dyn Fn(&str),
+    ) -> Result<Session<'a>> {
+        let mesh = scene.build_mesh()?;
+        say(&format!("{}: what accuracy costs in time", scene.title));
+        let (degree, refinement) = plan.reference;
+        let reference = Reference::new(scene, degree, refinement, &NEVER)?;
+        let head = vec![
+            format!("problem: {}", scene.title),
+            format!("error: standard measure against {}", reference.words()),
+            format!("machine: {}", machine(Kernel::widest())),
+        ];
+        head.iter().for_each(|line| say(line));
+        let (cells, h) = (mesh.cells.len(), mesh.smallest_h());
+        let study = Study { scene, cells, h, reference, records: vec![], repeat, interrupt: &NEVER };
+        Ok(Session { study, plan, out, head, say })
+    }
 }
 
 impl Session<'_> {
@@ -82,7 +120,7 @@ impl Session<'_> {
             if level > 0 && level == (self.plan.refinements.len() - 1).min(2) {
                 let spent = start.elapsed().as_secs_f64();
                 let whole = spent + self.rest(level, spent);
-                self.say(format!("  the whole study will take about {}", seconds(whole)));
+                self.say(format!("  the whole study will take about {}", short_seconds(whole)));
                 predicted = Some(whole);
             }
             for series in self.plan.series.clone() {
@@ -90,8 +128,8 @@ impl Session<'_> {
             }
         }
         if let Some(predicted) = predicted {
-            let took = seconds(start.elapsed().as_secs_f64());
-            self.say(format!("  the whole study took {took}, predicted {}", seconds(predicted)));
+            let took = short_seconds(start.elapsed().as_secs_f64());
+            self.say(format!("  the whole study took {took}, predicted {}", short_seconds(predicted)));
         }
         Ok(())
     }
@@ -200,13 +238,13 @@ impl Session<'_> {
     fn attempt(&mut self, choice: &Choice) -> Result<(Record, f64)> {
         let (cpu, error) = (choice.prediction.cpu, choice.prediction.error);
         let name = format!("{} with refinement {:.4}", choice.case.series.name(), choice.case.refinement);
-        self.say(format!("choice: {name}: predicted {}, error {error:.2e}", seconds(cpu)));
+        self.say(format!("choice: {name}: predicted {}, error {error:.2e}", short_seconds(cpu)));
         let record = self.measure(choice.case.clone())?;
         let Some(found) = record.error() else {
             let what = format!("the chosen setting does not run: {}", record.status);
             return Err(Error::input(what, "give other --degrees"));
         };
-        let took = format!("{} (predicted {})", seconds(record.cpu), seconds(cpu));
+        let took = format!("{} (predicted {})", short_seconds(record.cpu), short_seconds(cpu));
         self.say(format!("result: {took}, error {found:.2e} (predicted {error:.2e})"));
         Ok((record, found))
     }

@@ -1,7 +1,8 @@
 //! The results of a study as CSV and as the tables of a document.
 
-use super::case::{Record, Series};
+use super::case::Series;
 use super::front::{answers, cost};
+use super::record::Record;
 use super::words::percent;
 use crate::lane::Kernel;
 use std::fmt::Write;

@@ -1,6 +1,7 @@
 //! What a study says on the terminal.
 
-use super::case::Record;
+use super::record::Record;
+use crate::format::short_seconds;
 
 /// The head of the rows of [`line`].
 pub fn title() -> String {
@@ -26,20 +27,13 @@ pub fn answer(error: f64, record: &Record) -> String {
     let (name, cells) = (record.case.series.name(), record.cells);
     let found = record.error().unwrap_or(f64::NAN);
     let error = percent(error);
-    format!("  for an error of {error:<8} use {name} on {cells} cells: {} (error {found:.2e})", seconds(record.cpu))
+    format!(
+        "  for an error of {error:<8} use {name} on {cells} cells: {} (error {found:.2e})",
+        short_seconds(record.cpu)
+    )
 }
 
 /// 1 %, 0.01 %; below that as a power of ten.
 pub fn percent(error: f64) -> String {
     if error >= 0.9e-5 { format!("{} %", (error * 1e8).round() / 1e6) } else { format!("{error:.0e}") }
-}
-
-/// Seconds, as people say them.
-pub fn seconds(s: f64) -> String {
-    match s {
-        s if s < 1.0 => format!("{:.1} ms", 1e3 * s),
-        s if s < 120.0 => format!("{s:.1} s"),
-        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
 }

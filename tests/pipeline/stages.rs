@@ -44,7 +44,8 @@ fn a_rectangle_is_written_inspected_and_carried_to_gmsh_and_back() {
 #[test]
 fn seed_knows_every_layout_and_a_file_of_points() {
     let bench = Bench::new();
-    let count = |name: &str| cloud_file::read_cloud(&bench.path(name)).unwrap().0;
+    let mesh = dgmpm::parts::mesh::rectangle([1.0, 0.5], [4, 2]).unwrap();
+    let count = |name: &str| cloud_file::read_with(&bench.path(name), &mesh).unwrap().0;
     for layout in ["paper", "midpoints", "gauss", "jitter"] {
         let said = bench
             .run(&format!("seed case.toml --set cloud.layout={layout} --set cloud.per_direction=3 --out {layout}.h5"));

@@ -1,0 +1,53 @@
+//! The subcommands.
+
+use super::{bench, export, mesh, preprocess, regrid, run, seed, solve, stability, study};
+use crate::error::Result;
+use clap::Subcommand;
+
+/// A subcommand with its arguments.
+// Parsed once: its size costs nothing.
+#[allow(clippy::large_enum_variant)]
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Import, make or inspect a mesh of quadrilaterals
+    Mesh(mesh::Args),
+    /// Put material points into the cells of a mesh
+    Seed(seed::Args),
+    /// Compute and store all matrices, and say what the run will cost
+    Preprocess(preprocess::Args),
+    /// Step the conservation laws, from stored files where they are given
+    Solve(solve::Args),
+    /// Run a scene: mesh, seed, preprocess and solve in one go
+    Run(run::Args),
+    /// Show what accuracy costs in time: methods, degrees and meshes on one problem
+    Study(study::Args),
+    /// Tell how perturbations of a state grow: spectrum of the linearised step of a patch or a small body
+    Stability(stability::Args),
+    /// Measure the speed of the step against the peaks of this machine
+    Bench(bench::Args),
+    /// Bring a stopped run to another mesh
+    Regrid(regrid::Args),
+    /// Write a run's snapshots for ParaView, meshio and DOLFINx
+    Export(export::Args),
+}
+
+impl Command {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// The one message for the user.
+    pub fn run(self) -> Result<()> {
+        match self {
+            Command::Mesh(args) => mesh::run(&args),
+            Command::Seed(args) => seed::run(&args),
+            Command::Preprocess(args) => preprocess::run(&args),
+            Command::Solve(args) => solve::run(&args),
+            Command::Run(args) => run::run(&args),
+            Command::Study(args) => study::run(&args),
+            Command::Stability(args) => stability::run(&args),
+            Command::Bench(args) => bench::run(&args),
+            Command::Regrid(args) => regrid::run(&args),
+            Command::Export(args) => export::run(&args),
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! `dgmpm mesh`: import, make, inspect.
+
+mod args;
+
+use super::output::keep;
+use super::print::{note, say, table};
+use crate::error::{Error, Result};
+use crate::io::{read_mesh, write_mesh};
+use crate::mesh::{Link, Mesh, links, rectangle};
+use crate::problem::notices;
+use args::{Action, To};
+use std::path::Path;
+
+pub use args::Args;
+
+/// Runs it.
+pub fn run(args: &Args) -> Result<()> {
+    match (&args.action, &args.file) {
+        (Some(Action::Info { file }), _) => {
+            let mesh = read_mesh(file)?;
+            info(&mesh, &links(&mesh)?);
+            Ok(())
+        }
+        (Some(Action::Rectangle { size, cells, to }), _) => {
+            let pair = |what| Error::input(format!("{what} wants two numbers"), "for example --size 3,3 --cells 30,30");
+            let size = size[..].try_into().map_err(|_| pair("--size"))?;
+            let cells = cells[..].try_into().map_err(|_| pair("--cells"))?;
+            write(&rectangle(size, cells)?, to, Path::new("rectangle.h5"))
+        }
+        (None, Some(file)) => write(&read_mesh(file)?, &args.to, &file.with_extension("h5")),
+        (None, None) => Err(Error::input("no mesh is named", "give a Gmsh file, or `rectangle`, or `info FILE`")),
+    }
+}
+
+/// Writes a mesh whose boundary is wholly tagged.
+fn write(mesh: &Mesh, to: &To, default: &Path) -> Result<()> {
+    let links = links(mesh)?;
+    let out = to.out.as_deref().unwrap_or(default);
+    keep(out, to.force)?;
+    write_mesh(out, mesh)?;
+    info(mesh, &links);
+    say(format!("written to {}", out.display()));
+    Ok(())
+}
+
+fn info(mesh: &Mesh, links: &[[Link; 4]]) {
+    table(&mesh.rows());
+    notices::of_mesh(mesh, links).iter().for_each(note);
+}

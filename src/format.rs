@@ -1,0 +1,28 @@
+//! Rows of tables, and numbers as people say them.
+
+/// A row of a table of two columns: name and value.
+pub type Row = (String, String);
+
+/// A row of a table of two columns.
+pub fn row(name: impl Into<String>, value: impl Into<String>) -> Row {
+    (name.into(), value.into())
+}
+
+/// Bytes as MiB.
+pub fn mebibytes(bytes: usize) -> String {
+    format!("{:.1} MiB", bytes as f64 / (1024.0 * 1024.0))
+}
+
+/// Seconds, as people say them.
+pub fn seconds(s: f64) -> String {
+    match s {
+        s if s < 120.0 => format!("{s:.1} s"),
+        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// The same, with milliseconds below one second.
+pub fn short_seconds(s: f64) -> String {
+    if s < 1.0 { format!("{:.1} ms", 1e3 * s) } else { seconds(s) }
+}

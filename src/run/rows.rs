@@ -1,0 +1,76 @@
+//! A run at its end, as rows of a table.
+
+use super::Report;
+use crate::format::{Row, mebibytes, row, seconds};
+use crate::step::{Balance, Totals, phase::NAMES};
+
+impl Report {
+    /// What the run cost, and what became of energy and momentum.
+    pub fn rows(&self) -> Vec<Row> {
+        let mut rows = vec![
+            row("steps", self.steps.to_string()),
+            row("dt", if self.steps > 0 { format!("{:.4e} .. {:.4e} s", self.dt[0], self.dt[1]) } else { "-".into() }),
+            row("wall, CPU", format!("{}, {}", seconds(self.wall), seconds(self.cpu))),
+        ];
+        let all: f64 = self.phases.seconds.iter().sum();
+        for (name, s) in NAMES.iter().zip(self.phases.seconds).filter(|(_, s)| *s > 0.0) {
+            rows.push(row(format!("  {name}"), format!("{s:8.3} s {:5.1} %", 100.0 * s / all)));
+        }
+        rows.push(row("DoF-updates/s (CPU)", format!("{:.3e}", self.rate())));
+        rows.push(row("memory", mebibytes(self.bytes)));
+        if let (Some(first), Some(last)) = (&self.first, &self.last) {
+            rows.extend(self.changes(first, last));
+        }
+        rows
+    }
+
+    /// Energy and momentum at the start and the end, and what took them.
+    fn changes(&self, first: &Totals, last: &Totals) -> Vec<Row> {
+        let mut rows = vec![
+            row("kinetic energy", format!("{:.6e} -> {:.6e} J/m", first.kinetic, last.kinetic)),
+            row("strain energy", format!("{:.6e} -> {:.6e} J/m", first.strain, last.strain)),
+            row("total energy", format!("{:.6} of start and work", self.energy_ratio())),
+        ];
+        if let Some((first, last)) = first.dissipated.zip(last.dissipated) {
+            rows.push(row("dissipated by laws", format!("{first:.6e} -> {last:.6e} J/m")));
+        }
+        for (k, axis) in ["1", "2"].iter().enumerate() {
+            let change = format!("{:.6e} -> {:.6e} kg/s", first.momentum[k], last.momentum[k]);
+            rows.push(row(format!("momentum {axis}"), change));
+        }
+        if let Some((first, last)) = first.angular_momentum.zip(last.angular_momentum) {
+            rows.push(row("angular momentum", format!("{first:.6e} -> {last:.6e} kg m/s")));
+        }
+        match &self.balance {
+            Some(balance) => rows.extend(balance_rows(balance)),
+            None => rows.extend(work_rows(self.watch.work)),
+        }
+        let made = self.watch.made;
+        if self.watch.warned() {
+            rows.push(row("energy made", format!("{:.3e} J/m, {:.2} %", made.joule, 100.0 * made.share)));
+        }
+        rows.push(row("min J, max |curl F|", format!("{:.6}, {:.3e} 1/m", self.min_j, last.max_curl)));
+        rows
+    }
+}
+
+/// What came from outside; what a run did not have is left out.
+fn work_rows([boundary, sources]: [f64; 2]) -> Vec<Row> {
+    let parts = [("work of the boundary", boundary), ("work of sources", sources)];
+    let there = parts.into_iter().filter(|(_, joule)| *joule != 0.0);
+    there.map(|(name, joule)| row(format!("  {name}"), format!("{joule:.6e} J/m"))).collect()
+}
+
+/// Where energy came from and went to.
+fn balance_rows(balance: &Balance) -> Vec<Row> {
+    let parts = [
+        ("lost at faces", balance.flux_dissipation),
+        ("lost at the boundary", balance.boundary_dissipation),
+        ("lost by the control of the curl", balance.curl_dissipation),
+        ("lost by regrids", balance.regrid_dissipation),
+        ("taken by corrections", balance.correction_dissipation),
+    ];
+    let there = parts.into_iter().filter(|(_, joule)| *joule != 0.0);
+    let lost = there.map(|(name, joule)| row(format!("  {name}"), format!("{joule:.6e} J/m")));
+    work_rows([balance.boundary_work, balance.source_work]).into_iter().chain(lost).collect()
+}

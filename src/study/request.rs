@@ -1,0 +1,121 @@
+//! What a user asks of a study, and the plan that comes of it.
+
+use super::case::{Case, Series};
+use super::choice::Aim;
+use super::session::Plan;
+use crate::error::{Error, Result};
+use crate::registry::Method;
+use crate::scene::Scene;
+
+/// The smallest error that a study looks for: double precision over thousands of steps.
+const ROUNDING: f64 = 1e-13;
+/// The largest degree of a scene.
+const MOST_DEGREE: usize = 6;
+
+/// What is compared, as a user names it. An empty list stands for the default.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Request {
+    /// Names of methods.
+    pub methods: Vec<String>,
+    /// Degrees N.
+    pub degrees: Vec<usize>,
+    /// Degrees N_T of each N; empty: N alone.
+    pub time_degrees: Vec<usize>,
+    /// Cells per direction over those of the scene; whole numbers where its mesh is a file.
+    pub refinements: Vec<f64>,
+    /// Names of layouts of ADER-DGMPM; empty: that of the scene.
+    pub layouts: Vec<String>,
+    /// Degree and refinement of the reference run; empty: one degree more than the largest, on the finest mesh.
+    pub reference: Vec<f64>,
+    /// The standard error that the cheapest setting is looked for.
+    pub error: Option<f64>,
+    /// The CPU seconds that the most accurate setting is looked for.
+    pub seconds: Option<f64>,
+}
+
+impl Request {
+    /// The plan for a scene.
+    ///
+    /// # Errors
+    /// A name, degree or number that cannot be used; a scene with `[[regrid]]`.
+    pub fn plan(&self, scene: &Scene) -> Result<Plan> {
+        if !scene.regrids.is_empty() {
+            let what = "a study compares runs on one grid each, and the scene has [[regrid]]";
+            return Err(scene.error("regrid", what, "leave them out by --set regrid=[]"));
+        }
+        let (aim, series, refinements) = (self.aim()?, self.series(scene)?, self.refinements(scene)?);
+        let reference = self.reference(&refinements)?;
+        Ok(Plan { series, refinements, aim, reference })
+    }
+
+    fn aim(&self) -> Result<Option<Aim>> {
+        match (self.error, self.seconds) {
+            (Some(x), _) | (_, Some(x)) if !(x.is_finite() && x > 0.0) => {
+                Err(Error::input(format!("--error or --seconds is {x}"), "give a number above 0"))
+            }
+            (Some(error), _) if error < ROUNDING => {
+                let what = format!("--error is {error:e}, below what rounding leaves of any run");
+                Err(Error::input(what, format!("give {ROUNDING:e} or more")))
+            }
+            (Some(error), _) => Ok(Some(Aim::Error(error))),
+            (_, seconds) => Ok(seconds.map(Aim::Seconds)),
+        }
+    }
+
+    /// The meshes, from coarse to fine.
+    fn refinements(&self, scene: &Scene) -> Result<Vec<f64>> {
+        let of_file = scene.mesh_path().is_some();
+        let mut all = self.refinements.clone();
+        if all.is_empty() {
+            all = if of_file { vec![1.0, 2.0] } else { vec![0.25, 0.5, 1.0] };
+        }
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        let usable = |r: f64| r.is_finite() && r > 0.0 && (!of_file || r.fract() == 0.0);
+        if let Some(bad) = all.iter().chain(self.reference.get(1)).find(|r| !usable(**r)) {
+            let range = if of_file { "whole numbers from 1: the mesh is a file" } else { "numbers above 0" };
+            return Err(Error::input(format!("a refinement is {bad}"), format!("give {range}")));
+        }
+        Ok(all)
+    }
+
+    /// Degree and refinement of the reference run.
+    fn reference(&self, refinements: &[f64]) -> Result<(usize, f64)> {
+        let finest = refinements.last().copied().unwrap_or(1.0);
+        let largest = self.degrees.iter().copied().max().unwrap_or(1);
+        match self.reference[..] {
+            [] => Ok(((largest + 1).min(MOST_DEGREE), finest)),
+            [degree, refinement] if degree.fract() == 0.0 && (0.0..=MOST_DEGREE as f64).contains(&degree) => {
+                Ok((degree as usize, refinement))
+            }
+            _ => Err(Error::input("--reference is not DEGREE,REFINEMENT", "give two numbers, such as 5,2")),
+        }
+    }
+
+    fn series(&self, scene: &Scene) -> Result<Vec<Series>> {
+        let mut all = Vec::new();
+        for name in &self.methods {
+            let Some(method) = Method::named(name) else {
+                let what = format!("there is no method `{name}`");
+                return Err(Error::input(what, format!("--methods takes {}", Method::listed())));
+            };
+            let layouts: Vec<Option<String>> = match method {
+                Method::AderDgmpm if !self.layouts.is_empty() => self.layouts.iter().cloned().map(Some).collect(),
+                _ => vec![None],
+            };
+            for &degree in &self.degrees {
+                let own = [degree];
+                let times = if self.time_degrees.is_empty() { &own[..] } else { &self.time_degrees };
+                for &time_degree in times {
+                    let of = |layout: &Option<String>| Series { method, degree, time_degree, layout: layout.clone() };
+                    all.extend(layouts.iter().map(of));
+                }
+            }
+        }
+        // A misspelt layout or a degree beyond the range is an error of the request, not of one case.
+        for series in &all {
+            scene.with(&Case { series: series.clone(), refinement: 1.0 }.sets(scene))?.settings()?;
+        }
+        Ok(all)
+    }
+}
