@@ -115,19 +115,22 @@ kind = "fields"
 every = 2e-4
 "#;
 
+const fn modulus(name: &'static str, about: &'static str) -> Parameter {
+    Parameter::required(name, about, "Pa", Form::Number(POSITIVE))
+}
+
+const PARAMETERS: &[Parameter] = &[
+    modulus("c1", "half of the shear modulus that comes with I1"),
+    modulus("c2", "half of the shear modulus that comes with I2"),
+    modulus("kappa", "bulk modulus"),
+    Parameter::required("density", "rho0, in the initial configuration", "kg/m^3", Form::Number(POSITIVE)),
+];
+
 fn main() -> Result<()> {
-    const fn modulus(name: &'static str, about: &'static str) -> Parameter {
-        Parameter::required(name, about, "Pa", Form::Number(POSITIVE))
-    }
     LAWS.add(Entry {
         name: "mooney-rivlin",
         about: "compressible Mooney-Rivlin, finite strain, in plane strain",
-        parameters: &[
-            modulus("c1", "half of the shear modulus that comes with I1"),
-            modulus("c2", "half of the shear modulus that comes with I2"),
-            modulus("kappa", "bulk modulus"),
-            Parameter::required("density", "rho0, in the initial configuration", "kg/m^3", Form::Number(POSITIVE)),
-        ],
+        parameters: PARAMETERS,
         check: ANY,
         build: |of| {
             let [c1, c2, kappa, density] = ["c1", "c2", "kappa", "density"].map(|name| of.number(name));
