@@ -35,8 +35,7 @@ pub fn growth(mu: c64, courant: Option<f64>) -> f64 {
 /// The QR algorithm does not end.
 pub fn worst<N: Number>(matrix: Mat<N>, courant: Option<f64>) -> Result<f64> {
     let largest = |matrix: &Mat<N>| -> Result<f64> {
-        let values = matrix.eigenvalues().map_err(|_| no_end())?;
-        Ok(values.into_iter().map(|mu| growth(mu, courant)).fold(f64::NEG_INFINITY, f64::max))
+        Ok(eigenvalues(matrix)?.into_iter().map(|mu| growth(mu, courant)).fold(f64::NEG_INFINITY, f64::max))
     };
     let first = largest(&matrix)?;
     if !(0.0..DOUBTFUL).contains(&first) {
@@ -69,8 +68,28 @@ fn without_kernel<N: Number>(mut matrix: Mat<N>) -> Result<Mat<N>> {
     }
 }
 
+/// All eigenvalues. Where the QR algorithm does not end, it is tried again on a reflected matrix, which has the same ones and
+/// other roundings.
+fn eigenvalues<N: Number>(matrix: &Mat<N>) -> Result<Vec<c64>> {
+    let again = || reflected(matrix).eigenvalues();
+    matrix.eigenvalues().or_else(|_| again()).map_err(|_| no_end())
+}
+
+/// Q A Q with the reflection Q = 1 - 2 v v* / |v|^2, v = (1, 2, ..): all rows are mixed.
+fn reflected<N: Number>(matrix: &Mat<N>) -> Mat<N> {
+    let n = matrix.nrows();
+    let length = (0..n).map(|k| (1.0 + k as f64).powi(2)).sum::<f64>();
+    let entry = |i: usize, j: usize| f64::from(u8::from(i == j)) - 2.0 * (1.0 + i as f64) * (1.0 + j as f64) / length;
+    let q = Mat::from_fn(n, n, |i, j| N::from_f64_impl(entry(i, j)));
+    &q * matrix * &q
+}
+
+/// The error of eigenvalues or singular values that cannot be computed.
 pub fn no_end() -> Error {
-    Error::input("the eigenvalues of this case cannot be computed", "give another state or a smaller body")
+    Error::input(
+        "the iteration for the eigenvalues of this case does not converge",
+        "give a --deformation, --dt or body that differs a little, a lower --degree, or a smaller body",
+    )
 }
 
 /// Growth of a rate at some Bloch angles, or of a body.
@@ -90,10 +109,7 @@ mod tests {
 
     /// Q diag(blocks) Q^T with an orthogonal Q that mixes all rows: a reflection.
     fn mixed(blocks: Mat<f64>) -> Mat<f64> {
-        let n = blocks.nrows();
-        let v = |i: usize| (1.0 + i as f64) / (0..n).map(|k| (1.0 + k as f64).powi(2)).sum::<f64>().sqrt();
-        let q = Mat::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - 2.0 * v(i) * v(j));
-        &q * blocks * &q
+        reflected(&blocks)
     }
 
     #[test]
@@ -122,6 +138,13 @@ mod tests {
         });
         // Rounding of a matrix of order one.
         assert!((worst(mixed(blocks), None).unwrap() - 1e-6).abs() < 1e-14);
+    }
+
+    #[test]
+    fn eigenvalues_that_cannot_be_computed_are_an_error_that_says_what_to_do() {
+        let error = worst(Mat::from_fn(3, 3, |_, _| f64::NAN), None).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("does not converge") && error.to_string().contains("--degree"), "{error}");
     }
 
     #[test]
