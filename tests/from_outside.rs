@@ -122,6 +122,11 @@ impl Riemann for LaxFriedrichs {
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6] {
         Rusanov.flux(minus, plus, n, medium)
     }
+
+    #[inline(always)]
+    fn lifted<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>, scale: L) -> [L; 6] {
+        Rusanov.lifted(minus, plus, n, medium, scale)
+    }
 }
 
 /// A wall that the body may leave and reach: free while the gap (m) is open, a frictionless rigid wall where it is closed and
