@@ -52,8 +52,8 @@ pub trait Material: Copy + std::fmt::Debug + Send + Sync + 'static {
     /// Stored energy W, in J/m^3.
     fn energy<L: Lane>(&self, f: [L; 4], past: &Past<Self::History<L>>) -> L;
 
-    /// Energy that was dissipated since the material was virgin, in J/m^3. P is the derivative of stored and dissipated
-    /// energy together, at fixed history of t_n.
+    /// Energy that was dissipated since the material was virgin, in J/m^3. Where it does not depend on the rate, P is the
+    /// derivative of stored and dissipated energy together, at fixed history of t_n.
     #[inline(always)]
     fn dissipated<L: Lane>(&self, _: [L; 4], _: &Past<Self::History<L>>) -> L {
         L::zero()

@@ -27,6 +27,9 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+/// Boundary points with the places of their numbers.
+type PointTree = RTree<GeomWithData<[f64; 2], Range<usize>>>;
+
 /// The rules of a scene, and what has come of them.
 pub struct Regrids<'a> {
     scene: Scene,
@@ -250,7 +253,7 @@ impl Problem {
     /// The memory of boundary conditions on a new grid: that of the nearest point of the group.
     fn boundary_memory_on(&self, mesh: &Mesh, after: &Scheme) -> Vec<f64> {
         let values = self.scheme.boundary_memory_of(&self.state);
-        let mut trees: HashMap<&str, RTree<GeomWithData<[f64; 2], Range<usize>>>> = HashMap::new();
+        let mut trees: HashMap<&str, PointTree> = HashMap::new();
         for point in self.scheme.points_with_memory() {
             let group = &self.body.mesh.edge_groups[point.group][..];
             trees.entry(group).or_default().insert(GeomWithData::new(point.x, point.numbers));
