@@ -132,6 +132,11 @@ pub use exact::{Errors, Exact, Norms, errors};
 /// The command line, `dgmpm ..`. A program that adds to [`registry`] first has it with laws, conditions and sources of its own.
 pub use cli::main;
 
+/// The recipes of `docs/extend.md`, compiled by the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/extend.md")]
+pub struct Recipes;
+
 /// All modules, for the tests and benches of this crate: no part of its surface, and without promises.
 #[doc(hidden)]
 pub mod parts {
