@@ -80,7 +80,7 @@ fn what_is_known_of_points_and_cells_comes_back_with_their_cloud() {
         h: 0.1,
         dt: 1e-7,
     };
-    let more = cloud_file::More {
+    let more = cloud_file::Extras {
         virtual_points: (0..cloud.len()).map(|p| p % 3 == 0).collect(),
         fields: vec![
             Field::new("deformation", Kind::Tensor, io_samples::noise(9 * cloud.len(), 1)),
@@ -91,7 +91,7 @@ fn what_is_known_of_points_and_cells_comes_back_with_their_cloud() {
     };
     cloud_file::write_with(&path, &cloud, &mesh, &more).unwrap();
     assert_eq!(cloud_file::read_with(&path, &mesh).unwrap(), (cloud.clone(), more.clone()));
-    let short = cloud_file::More { virtual_points: vec![true], ..more };
+    let short = cloud_file::Extras { virtual_points: vec![true], ..more };
     assert_eq!(cloud_file::write_with(&path, &cloud, &mesh, &short).unwrap_err().exit_code(), 5);
 }
 

@@ -9,7 +9,7 @@ use crate::problem::{Problem, certificates, notices};
 pub fn report(problem: &Problem) -> Result<Vec<Certificate>> {
     let cost = problem.cost().map_err(|loss| problem.lost_at_start(&loss))?;
     table(&cost.rows(problem));
-    certificates::word(&problem.scene, &problem.body).iter().for_each(say);
+    certificates::notice(&problem.scene, &problem.body).iter().for_each(say);
     notices::of_run(problem, &cost).iter().for_each(note);
     certificates::memory(&problem.body).iter().for_each(say);
     certificates::warning(problem).iter().for_each(warn);

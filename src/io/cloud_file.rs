@@ -24,7 +24,7 @@ const FIELD: &str = "field_";
 
 /// What a file may hold beside the positions of the points. A part that the file does not hold is empty.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct More {
+pub struct Extras {
     /// Whether each point is virtual.
     pub virtual_points: Vec<bool>,
     /// Fields at the points.
@@ -35,11 +35,11 @@ pub struct More {
 
 /// Writes the cloud of a mesh.
 pub fn write_cloud(path: &Path, cloud: &Cloud, mesh: &Mesh) -> Result<()> {
-    write_with(path, cloud, mesh, &More::default())
+    write_with(path, cloud, mesh, &Extras::default())
 }
 
-/// Writes the cloud of a mesh, with the further parts of [`More`].
-pub fn write_with(path: &Path, cloud: &Cloud, mesh: &Mesh, more: &More) -> Result<()> {
+/// Writes the cloud of a mesh, with the further parts of [`Extras`].
+pub fn write_with(path: &Path, cloud: &Cloud, mesh: &Mesh, more: &Extras) -> Result<()> {
     if let Some(what) = fault(cloud).or_else(|| misfit(cloud, mesh)).or_else(|| too_few(cloud, more)) {
         return Err(Error::output(path, what));
     }
@@ -74,7 +74,7 @@ fn read_places(store: &mut Store) -> Result<Cloud> {
 }
 
 /// Reads a cloud that must belong to this mesh, with all further parts of the file.
-pub fn read_with(path: &Path, mesh: &Mesh) -> Result<(Cloud, More)> {
+pub fn read_with(path: &Path, mesh: &Mesh) -> Result<(Cloud, Extras)> {
     let mut store = Store::read(path, FORMAT)?;
     let cloud = read_places(&mut store)?;
     if store.attribute("mesh")? != hash::of_mesh(mesh) {
@@ -83,7 +83,7 @@ pub fn read_with(path: &Path, mesh: &Mesh) -> Result<(Cloud, More)> {
     if let Some(what) = misfit(&cloud, mesh) {
         return Err(store.error(what));
     }
-    let mut more = More { certificates: certificates::read(&mut store, mesh.cells.len())?, ..More::default() };
+    let mut more = Extras { certificates: certificates::read(&mut store, mesh.cells.len())?, ..Extras::default() };
     if store.names().any(|name| name == "virtual") {
         more.virtual_points = store.indices("virtual", &[])?.into_iter().map(|flag| flag != 0).collect();
     }
@@ -102,7 +102,7 @@ pub fn read_with(path: &Path, mesh: &Mesh) -> Result<(Cloud, More)> {
 }
 
 /// Whether a flag or a value of a field is missing for some point.
-fn too_few(cloud: &Cloud, more: &More) -> Option<String> {
+fn too_few(cloud: &Cloud, more: &Extras) -> Option<String> {
     let flags = more.virtual_points.len();
     if flags != 0 && flags != cloud.len() {
         return Some(format!("`virtual` has {flags} entries for {} points", cloud.len()));

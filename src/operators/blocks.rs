@@ -57,10 +57,10 @@ impl Blocks {
             all
         };
         let graph: Vec<Vec<usize>> = lists.iter().enumerate().map(around).collect();
-        Self::of_lists(material, links, &lists, &order::narrow(&graph))
+        Self::of_lists(material, links, &lists, &order::reduce_bandwidth(&graph))
     }
 
-    /// The distance of a block from its farthest neighbour, the median over all blocks, as in [`order::narrow`].
+    /// The distance of a block from its farthest neighbour, the median over all blocks, as in [`order::reduce_bandwidth`].
     fn reach(&self) -> usize {
         let of = |(block, neighbours): (usize, &[[Neighbour; LANES]; FACES])| {
             let far = neighbours.iter().flatten().map(|neighbour| match neighbour {

@@ -164,13 +164,13 @@ pub fn carry(mesh: &Mesh, line: &Line, cloud: &Cloud, limits: &Limits, memory: &
     Ok(out)
 }
 
-/// For each group of cells that has one of the `poor` cells (their points cannot carry Q_N), the points of the group.
+/// For each group of cells that has one of the `deficient` cells (their points cannot carry Q_N), the points of the group.
 ///
 /// # Errors
 /// One of these groups has no point.
-pub(super) fn trees(mesh: &Mesh, cloud: &Cloud, poor: &[usize]) -> Result<Vec<Option<Tree>>, Error> {
+pub(super) fn trees(mesh: &Mesh, cloud: &Cloud, deficient: &[usize]) -> Result<Vec<Option<Tree>>, Error> {
     let mut asked = vec![None; mesh.groups.len()];
-    for &cell in poor {
+    for &cell in deficient {
         asked[mesh.cell_group[cell]].get_or_insert(cell);
     }
     let is_asked: Vec<bool> = asked.iter().map(Option::is_some).collect();

@@ -36,15 +36,15 @@ pub fn from_points(
         if bad { Ok(None) } else { to_nodes(line, cloud.of(cell), mesh.number(cell)).map(Some) }
     };
     let fits = examples.par_iter().map(fit).collect::<Result<Vec<Option<Matrix<f64>>>, Error>>()?;
-    let poor: Vec<usize> = (0..mesh.cells.len()).filter(|&cell| fits[class[cell]].is_none()).collect();
-    let trees = trees(mesh, cloud, &poor)?;
+    let deficient: Vec<usize> = (0..mesh.cells.len()).filter(|&cell| fits[class[cell]].is_none()).collect();
+    let trees = trees(mesh, cloud, &deficient)?;
     let of_cell = |cell: usize| {
         let own: Vec<usize> = (cloud.first[cell]..cloud.first[cell + 1]).collect();
         let (weights, points) = match (&fits[class[cell]], &trees[mesh.cell_group[cell]]) {
             (Some(weights), _) => (weights.data.clone(), own),
             (None, Some(tree)) => around(mesh, line, limits, cell, tree)?,
             // `trees` has a tree for each group that has a cell whose points cannot carry Q_N.
-            (None, None) => return Err(lonely(mesh, line, cell)),
+            (None, None) => return Err(without_points(mesh, line, cell)),
         };
         let rows = weights.chunks(points.len());
         let value = |row: &[f64], k: usize| row.iter().zip(&points).map(|(w, p)| w * values[p * components + k]).sum();
@@ -91,10 +91,10 @@ fn around(
             break;
         }
     }
-    Err(lonely(mesh, line, cell))
+    Err(without_points(mesh, line, cell))
 }
 
-fn lonely(mesh: &Mesh, line: &Line, cell: usize) -> Error {
+fn without_points(mesh: &Mesh, line: &Line, cell: usize) -> Error {
     Error::input(
         format!("the points in and around cell {} cannot give its state of degree {}", mesh.number(cell), line.m - 1),
         "give more points there, a coarser mesh, or a lower scheme.degree",

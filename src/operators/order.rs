@@ -3,7 +3,7 @@
 /// The nodes in their own order, or in the order of Cuthill and McKee if neighbours are nearer in it. The two are
 /// compared by the median over all nodes: at periodic edges neighbours are far apart in any order, but there are few of
 /// them.
-pub fn narrow(graph: &[Vec<usize>]) -> Vec<usize> {
+pub fn reduce_bandwidth(graph: &[Vec<usize>]) -> Vec<usize> {
     let own: Vec<usize> = (0..graph.len()).collect();
     let other = cuthill_mckee(graph);
     let mut place = own.clone();
@@ -94,7 +94,7 @@ mod tests {
         // Both ways around at once: two places apart at most, one at the ends.
         let order = cuthill_mckee(&graph);
         assert_eq!(reach(&graph, &places(&order)), 2);
-        assert_eq!(narrow(&graph), order);
+        assert_eq!(reduce_bandwidth(&graph), order);
         graph.extend(ring(5).into_iter().map(|around| around.into_iter().map(|k| k + 20).collect()));
         let order = cuthill_mckee(&graph);
         assert!(order[..20].iter().all(|&k| k < 20) && order.len() == 25);
@@ -102,8 +102,8 @@ mod tests {
 
     #[test]
     fn the_seam_of_a_ring_or_a_line_does_not_move_it_out_of_its_order() {
-        assert_eq!(narrow(&ring(20)), (0..20).collect::<Vec<_>>());
+        assert_eq!(reduce_bandwidth(&ring(20)), (0..20).collect::<Vec<_>>());
         let line: Vec<Vec<usize>> = vec![vec![1], vec![0, 2], vec![1]];
-        assert_eq!(narrow(&line), [0, 1, 2]);
+        assert_eq!(reduce_bandwidth(&line), [0, 1, 2]);
     }
 }

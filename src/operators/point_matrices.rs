@@ -280,7 +280,7 @@ fn expand(a: &Factor<f64>, b: &Factor<f64>) -> PointMatrices<f64> {
     }
 }
 
-/// More rows by repeating the first, more columns by zeros.
+/// Extras rows by repeating the first, more columns by zeros.
 fn pad(matrix: &Matrix<f64>, rows: usize, columns: usize) -> Matrix<f64> {
     let mut data = Vec::with_capacity(rows * columns);
     for r in 0..rows {

@@ -3,7 +3,7 @@
 use super::points::{Given, read_points};
 use crate::cloud::Cloud;
 use crate::error::Result;
-use crate::io::cloud_file::{self, More};
+use crate::io::cloud_file::{self, Extras};
 use crate::io::snapshot::GridFiles;
 use crate::io::{mesh_file, read_mesh};
 use crate::mesh::Mesh;
@@ -142,7 +142,7 @@ impl Body {
     /// Files that cannot be written.
     pub fn write(&self, folder: &Folder, files: &GridFiles) -> Result<()> {
         mesh_file::write_mesh(&folder.root.join(&files.mesh), &self.mesh)?;
-        let more = More { virtual_points: self.virtual_points.clone(), ..More::default() };
+        let more = Extras { virtual_points: self.virtual_points.clone(), ..Extras::default() };
         cloud_file::write_with(&folder.root.join(&files.cloud), &self.cloud, &self.mesh, &more)
     }
 

@@ -65,7 +65,7 @@ pub fn warning(problem: &Problem) -> Option<String> {
 }
 
 /// The word on cells that cannot carry the degree and have virtual points; none where there are none.
-pub fn word(scene: &Scene, body: &Body) -> Option<String> {
+pub fn notice(scene: &Scene, body: &Body) -> Option<String> {
     let all: Vec<&Deficient> = body.deficient.iter().filter(|d| d.cause != Cause::Memory).collect();
     let cells = body.mesh.cells.len();
     if all.is_empty() {

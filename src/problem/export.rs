@@ -25,7 +25,7 @@ pub struct Export {
 }
 
 /// A grid of the run.
-struct Sheet {
+struct GridOfRun {
     files: GridFiles,
     body: Body,
     /// Where internal variables stand.
@@ -65,7 +65,7 @@ impl Export {
         &self.out
     }
 
-    fn sheet(&self, files: &GridFiles) -> Result<Sheet> {
+    fn grid_of_run(&self, files: &GridFiles) -> Result<GridOfRun> {
         let mut body = Body::read(&self.scene, &self.folder, files)?;
         if body.certificates.is_empty() {
             // A grid that came in by a regrid, or a run of an older version.
@@ -73,33 +73,38 @@ impl Export {
         }
         let cell_fields = export::cell_fields(&body.mesh, &body.certificates, &body.material);
         let places = body.places(&self.scene).into_owned();
-        Ok(Sheet { files: files.clone(), body, places, cell_fields })
+        Ok(GridOfRun { files: files.clone(), body, places, cell_fields })
     }
 
     /// The number of internal variables of all points of a grid.
-    fn internal(&self, sheet: &Sheet) -> usize {
-        let of = |(cell, &law): (usize, &usize)| self.laws[law].history_len() * sheet.places.of(cell).len();
-        sheet.body.material.iter().enumerate().map(of).sum()
+    fn internal(&self, grid_of_run: &GridOfRun) -> usize {
+        let of = |(cell, &law): (usize, &usize)| self.laws[law].history_len() * grid_of_run.places.of(cell).len();
+        grid_of_run.body.material.iter().enumerate().map(of).sum()
     }
 
     /// Reads the snapshots, each with its own grid, and hands their solutions to `use_it`, with whether the grid is new.
-    fn each(&self, mut use_it: impl FnMut(usize, &Sheet, &Solution, f64, bool) -> Result<()>) -> Result<()> {
-        let mut last: Option<Sheet> = None;
+    fn each(&self, mut use_it: impl FnMut(usize, &GridOfRun, &Solution, f64, bool) -> Result<()>) -> Result<()> {
+        let mut last: Option<GridOfRun> = None;
         for (step, path) in &self.files {
             let snapshot = Snapshot::read(path)?;
-            let (sheet, is_new) = match last.take() {
-                Some(sheet) if sheet.files == snapshot.grid => (sheet, false),
-                _ => (self.sheet(&snapshot.grid)?, true),
+            let (grid_of_run, is_new) = match last.take() {
+                Some(grid_of_run) if grid_of_run.files == snapshot.grid => (grid_of_run, false),
+                _ => (self.grid_of_run(&snapshot.grid)?, true),
             };
-            let fits = snapshot.cells() == sheet.body.mesh.cells.len() && snapshot.degree + 1 == self.basis.len();
-            if !fits || snapshot.internal.len() != self.internal(&sheet) {
+            let fits = snapshot.cells() == grid_of_run.body.mesh.cells.len() && snapshot.degree + 1 == self.basis.len();
+            if !fits || snapshot.internal.len() != self.internal(&grid_of_run) {
                 let what = format!("{} does not belong to the scene and mesh of this run", path.display());
                 return Err(Error::input(what, "run the scene again with --force"));
             }
-            let solution =
-                Solution::of_snapshot(&snapshot, &self.basis, &self.laws, &sheet.body.material, &sheet.places);
-            use_it(*step, &sheet, &solution, snapshot.time, is_new)?;
-            last = Some(sheet);
+            let solution = Solution::of_snapshot(
+                &snapshot,
+                &self.basis,
+                &self.laws,
+                &grid_of_run.body.material,
+                &grid_of_run.places,
+            );
+            use_it(*step, &grid_of_run, &solution, snapshot.time, is_new)?;
+            last = Some(grid_of_run);
         }
         Ok(())
     }
@@ -116,12 +121,12 @@ impl Export {
     /// A snapshot that does not belong to the run; a file that cannot be written.
     pub fn vtu(&self) -> Result<()> {
         let (mut grids, mut points) = (Vec::new(), Vec::new());
-        self.each(|step, sheet, solution, time, _| {
+        self.each(|step, grid_of_run, solution, time, _| {
             let (grid_path, point_path) =
                 (self.out.join(format!("grid_{step:06}.vtu")), self.out.join(format!("points_{step:06}.vtu")));
-            let (fields, body) = (self.fields(solution), &sheet.body);
+            let (fields, body) = (self.fields(solution), &grid_of_run.body);
             let mut grid = export::grid(&body.mesh, solution, &fields);
-            grid.cell_fields = sheet.cell_fields.clone();
+            grid.cell_fields = grid_of_run.cell_fields.clone();
             vtu::write_grid(&grid_path, &grid)?;
             vtu::write_points(
                 &point_path,
@@ -144,8 +149,8 @@ impl Export {
         xdmf::write_mesh(&self.out.join("mesh.xdmf"), &first)?;
         xdmf::write_boundary(&self.out.join("boundary.xdmf"), &first)?;
         let mut series: Option<xdmf::Series> = None;
-        self.each(|_, sheet, solution, time, is_new| {
-            let grid = export::grid(&sheet.body.mesh, solution, &self.fields(solution));
+        self.each(|_, grid_of_run, solution, time, is_new| {
+            let grid = export::grid(&grid_of_run.body.mesh, solution, &self.fields(solution));
             let series = match &mut series {
                 Some(series) => {
                     if is_new {
@@ -155,7 +160,7 @@ impl Export {
                 }
                 none => none.insert(xdmf::Series::create(&self.out.join("series.xdmf"), &grid)?),
             };
-            series.push(time, &grid.point_fields, &sheet.cell_fields)
+            series.push(time, &grid.point_fields, &grid_of_run.cell_fields)
         })?;
         series.map_or(Ok(()), xdmf::Series::finish)
     }

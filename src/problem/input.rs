@@ -2,7 +2,7 @@
 
 use super::{Body, Files, Problem};
 use crate::error::{Error, Place, Result};
-use crate::io::cloud_file::{self, More};
+use crate::io::cloud_file::{self, Extras};
 use crate::io::{mesh_file, pending};
 use crate::observe::{Solution, export};
 use crate::operators::Certificate;
@@ -43,7 +43,7 @@ pub fn write_input(problem: &Problem, files: &Files, folder: &Folder, certificat
         }
         false => vec![],
     };
-    let more = More { virtual_points: body.virtual_points.clone(), fields, certificates };
+    let more = Extras { virtual_points: body.virtual_points.clone(), fields, certificates };
     cloud_file::write_with(&folder.cloud(), &body.cloud, &body.mesh, &more)?;
     let text = scene.portable_toml(files.mesh.is_some(), files.cloud.is_some());
     pending::write_text(&folder.scene(), &text)

@@ -74,8 +74,8 @@ fn in_parts(mesh: &Mesh, parts: &[Part]) -> Option<String> {
     if parts.len() < 2 {
         return None;
     }
-    let word = |part: &Part| format!("{} cell(s) with cell {}", part.cells, mesh.number(part.first));
-    let mut list: Vec<String> = parts.iter().take(NAMED).map(word).collect();
+    let text = |part: &Part| format!("{} cell(s) with cell {}", part.cells, mesh.number(part.first));
+    let mut list: Vec<String> = parts.iter().take(NAMED).map(text).collect();
     if parts.len() > NAMED {
         list.push(format!("and {} more", parts.len() - NAMED));
     }
@@ -90,14 +90,14 @@ fn in_parts(mesh: &Mesh, parts: &[Part]) -> Option<String> {
 /// A word on each group that is a boundary with some of its edges only; `rest` says what is with these.
 fn partly_inside(mesh: &Mesh, counts: &[EdgeCount], rest: &str) -> Vec<String> {
     let partly = |(_, count): &(usize, &EdgeCount)| count.inner > 0 && count.boundary > 0;
-    let word = |(group, count): (usize, &EdgeCount)| {
+    let text = |(group, count): (usize, &EdgeCount)| {
         format!(
             "the group `{}` lies partly inside of the body: {} edge(s) inside, where it is no boundary, and {} boundary \
              edge(s); {rest}",
             mesh.edge_groups[group], count.inner, count.boundary
         )
     };
-    counts.iter().enumerate().filter(partly).map(word).collect()
+    counts.iter().enumerate().filter(partly).map(text).collect()
 }
 
 /// A word on cells with a boundary on two opposite sides, where the degree is 1: they do not hold bending.

@@ -16,7 +16,7 @@ use crate::mesh::Mesh;
 use crate::observe::{Schedule, View};
 use crate::operators::{Limits, Operators};
 use crate::registry::grids::Present;
-use crate::regrid::points::{Demand, Placed, Policy, histories, place};
+use crate::regrid::points::{Placed, Policy, Requirements, histories, place};
 use crate::regrid::{self, Field, Grid, Transfer};
 use crate::run::{Folder, Pause};
 use crate::scene::{Scene, When};
@@ -227,9 +227,9 @@ impl Problem {
             false => {
                 let (policy, fresh, histories) = (Policy::Layout, &places, true);
                 let (virtual_points, on_nodes) = (&[][..], &[][..]);
-                let demand =
-                    Demand { line, policy, fresh, samples: false, limits, virtual_points, histories, on_nodes };
-                Some(place(&from, &old_places, &to, same, &demand)?)
+                let required =
+                    Requirements { line, policy, fresh, samples: false, limits, virtual_points, histories, on_nodes };
+                Some(place(&from, &old_places, &to, same, &required)?)
             }
         };
         let placed = nodes.as_ref().unwrap_or(placed);
@@ -281,8 +281,9 @@ impl Problem {
         let (limits, virtual_points) = (&scene.limits_of_cells(), &old.virtual_points[..]);
         let line = &scheme.operators.line;
         let on_nodes = &scene.on_nodes(to.material);
-        let demand = Demand { line, policy, fresh: &fresh, samples, limits, virtual_points, histories, on_nodes };
-        place(&old.grid(), &old.cloud, to, &transfer.same, &demand)
+        let required =
+            Requirements { line, policy, fresh: &fresh, samples, limits, virtual_points, histories, on_nodes };
+        place(&old.grid(), &old.cloud, to, &transfer.same, &required)
     }
 }
 

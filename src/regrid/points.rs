@@ -41,7 +41,7 @@ pub struct Placed {
 
 /// The settings for the points of the new cells.
 #[derive(Debug, Clone, Copy)]
-pub struct Demand<'a> {
+pub struct Requirements<'a> {
     /// The nodal basis.
     pub line: &'a Line,
     /// What becomes of the points.
@@ -63,7 +63,7 @@ pub struct Demand<'a> {
 
 /// A point of a new cell.
 #[derive(Debug, Clone, Copy)]
-struct Seat {
+struct Located {
     xi: [f64; 2],
     /// The old point, if it is one.
     old: Option<usize>,
@@ -75,39 +75,46 @@ struct Seat {
 ///
 /// # Errors
 /// A material without any old point.
-pub fn place(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>], demand: &Demand) -> Result<Placed, Error> {
-    let (mut seats, outside) = match demand.policy {
-        Policy::Layout => (of_layout(cloud, same, demand.fresh), 0),
+pub fn place(
+    old: &Grid,
+    cloud: &Cloud,
+    new: &Grid,
+    same: &[Option<usize>],
+    required: &Requirements,
+) -> Result<Placed, Error> {
+    let (mut located, outside) = match required.policy {
+        Policy::Layout => (of_layout(cloud, same, required.fresh), 0),
         Policy::Keep | Policy::Enrich => stay(old, cloud, new, same),
     };
     // Two kinds of cells are not checked: those whose points have not changed, which can carry what they could before;
     // and those whose points need not carry the degree.
-    let changed: Vec<bool> = seats
+    let changed: Vec<bool> = located
         .iter()
         .zip(same)
-        .map(|(seats, same)| same.is_none_or(|twin| cloud.of(twin).len() != seats.len()))
+        .map(|(located, same)| same.is_none_or(|twin| cloud.of(twin).len() != located.len()))
         .enumerate()
-        .map(|(cell, changed)| changed && demand.on_nodes.get(cell) != Some(&true))
+        .map(|(cell, changed)| changed && required.on_nodes.get(cell) != Some(&true))
         .collect();
-    if demand.samples {
-        if demand.policy == Policy::Enrich {
-            enrich(&mut seats, &changed, new, demand)?;
+    if required.samples {
+        if required.policy == Policy::Enrich {
+            enrich(&mut located, &changed, new, required)?;
         }
-        if demand.policy != Policy::Layout {
-            let poor = poor(&seats, &changed, new, demand)?;
-            for cell in poor {
-                seats[cell] =
-                    demand.line.nodes().into_iter().map(|xi| Seat { xi, old: None, is_virtual: true }).collect();
+        if required.policy != Policy::Layout {
+            let deficient = deficient(&located, &changed, new, required)?;
+            for cell in deficient {
+                located[cell] =
+                    required.line.nodes().into_iter().map(|xi| Located { xi, old: None, is_virtual: true }).collect();
             }
         }
     }
-    let source = if demand.histories { sources(old, cloud, new, &seats)? } else { vec![] };
+    let source = if required.histories { sources(old, cloud, new, &located)? } else { vec![] };
     let mut out = Placed { cloud: Cloud { first: vec![0], xi: vec![] }, source, outside, ..Placed::default() };
-    let was_virtual = |seat: &Seat| seat.old.is_some_and(|old| demand.virtual_points.get(old) == Some(&true));
-    for seats in &seats {
-        out.virtual_points.extend(seats.iter().map(|seat| seat.is_virtual || was_virtual(seat)));
-        out.kept.extend(seats.iter().map(|seat| seat.old.is_some()));
-        out.cloud.xi.extend(seats.iter().map(|seat| seat.xi));
+    let was_virtual =
+        |point_at: &Located| point_at.old.is_some_and(|old| required.virtual_points.get(old) == Some(&true));
+    for located in &located {
+        out.virtual_points.extend(located.iter().map(|point_at| point_at.is_virtual || was_virtual(point_at)));
+        out.kept.extend(located.iter().map(|point_at| point_at.old.is_some()));
+        out.cloud.xi.extend(located.iter().map(|point_at| point_at.xi));
         out.cloud.first.push(out.cloud.xi.len());
     }
     if !out.virtual_points.contains(&true) {
@@ -117,34 +124,34 @@ pub fn place(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>], dema
 }
 
 /// Cells that are copies keep their points. Other cells get the points of the layout.
-fn of_layout(cloud: &Cloud, same: &[Option<usize>], fresh: &Cloud) -> Vec<Vec<Seat>> {
+fn of_layout(cloud: &Cloud, same: &[Option<usize>], fresh: &Cloud) -> Vec<Vec<Located>> {
     let of = |(cell, same): (usize, &Option<usize>)| match same {
         Some(twin) => own(cloud, *twin),
-        None => fresh.of(cell).iter().map(|&xi| Seat { xi, old: None, is_virtual: false }).collect(),
+        None => fresh.of(cell).iter().map(|&xi| Located { xi, old: None, is_virtual: false }).collect(),
     };
     same.iter().enumerate().map(of).collect()
 }
 
 /// The points of a cell that stays, with their parent coordinates to the bit.
-fn own(cloud: &Cloud, cell: usize) -> Vec<Seat> {
+fn own(cloud: &Cloud, cell: usize) -> Vec<Located> {
     let numbered = cloud.of(cell).iter().zip(cloud.first[cell]..);
-    numbered.map(|(&xi, point)| Seat { xi, old: Some(point), is_virtual: false }).collect()
+    numbered.map(|(&xi, point)| Located { xi, old: Some(point), is_virtual: false }).collect()
 }
 
 /// All points at their X in the new cells, and the number of points outside the new mesh.
-fn stay(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>]) -> (Vec<Vec<Seat>>, usize) {
+fn stay(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>]) -> (Vec<Vec<Located>>, usize) {
     let mut stays = vec![false; old.mesh.cells.len()];
-    let mut seats: Vec<Vec<Seat>> = vec![vec![]; same.len()];
+    let mut located: Vec<Vec<Located>> = vec![vec![]; same.len()];
     for (cell, twin) in same.iter().enumerate().filter_map(|(cell, same)| Some((cell, (*same)?))) {
         stays[twin] = true;
-        seats[cell] = own(cloud, twin);
+        located[cell] = own(cloud, twin);
     }
     let moving: Vec<(usize, usize)> = (0..stays.len())
         .filter(|&cell| !stays[cell])
         .flat_map(|cell| (cloud.first[cell]..cloud.first[cell + 1]).map(move |point| (cell, point)))
         .collect();
     if moving.is_empty() {
-        return (seats, 0);
+        return (located, 0);
     }
     let locator = Locator::new(new.mesh);
     let find = |&(cell, point): &(usize, usize)| {
@@ -154,46 +161,51 @@ fn stay(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>]) -> (Vec<V
     };
     let found: Vec<_> = moving.par_iter().map(find).collect();
     for ((cell, xi), point) in found.iter().flatten() {
-        seats[*cell].push(Seat { xi: xi.map(on_lattice), old: Some(*point), is_virtual: false });
+        located[*cell].push(Located { xi: xi.map(on_lattice), old: Some(*point), is_virtual: false });
     }
-    (seats, found.iter().filter(|found| found.is_none()).count())
+    (located, found.iter().filter(|found| found.is_none()).count())
 }
 
 /// Changed cells whose points cannot carry Q_N.
-fn poor(seats: &[Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand) -> Result<Vec<usize>, Error> {
+fn deficient(
+    located: &[Vec<Located>],
+    changed: &[bool],
+    new: &Grid,
+    required: &Requirements,
+) -> Result<Vec<usize>, Error> {
     // For the other cells a list of one point is enough and makes no work.
-    let look = |cell: usize| if changed[cell] { &seats[cell][..] } else { &[] };
+    let look = |cell: usize| if changed[cell] { &located[cell][..] } else { &[] };
     let mut cloud = Cloud { first: vec![0], xi: vec![] };
-    for cell in 0..seats.len() {
-        cloud.xi.extend(look(cell).iter().map(|seat| seat.xi));
+    for cell in 0..located.len() {
+        cloud.xi.extend(look(cell).iter().map(|point_at| point_at.xi));
         cloud.first.push(cloud.xi.len());
     }
-    let certificates = certify(new.mesh, demand.line, Sampling::Cloud(&cloud))?;
-    let cannot = |cell: &usize| changed[*cell] && !carries(&certificates[*cell], demand);
-    Ok((0..seats.len()).filter(cannot).collect())
+    let certificates = certify(new.mesh, required.line, Sampling::Cloud(&cloud))?;
+    let cannot = |cell: &usize| changed[*cell] && !carries(&certificates[*cell], required);
+    Ok((0..located.len()).filter(cannot).collect())
 }
 
-fn carries(certificate: &Certificate, demand: &Demand) -> bool {
-    demand.limits.cause(certificate, demand.line.m * demand.line.m).is_none()
+fn carries(certificate: &Certificate, required: &Requirements) -> bool {
+    required.limits.cause(certificate, required.line.m * required.line.m).is_none()
 }
 
 /// Adds points of the layout if there are too few. If there are too many, those nearest to the Gauss nodes stay,
 /// because they amplify errors least at the faces.
-fn enrich(seats: &mut [Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand) -> Result<(), Error> {
+fn enrich(located: &mut [Vec<Located>], changed: &[bool], new: &Grid, required: &Requirements) -> Result<(), Error> {
     let gap = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
-    for cell in poor(seats, changed, new, demand)? {
+    for cell in deficient(located, changed, new, required)? {
         // Half of the spacing of the layout. A point of the layout that is nearer than this to a present point adds nothing.
-        let near = 0.5 / (demand.fresh.of(cell).len() as f64).sqrt();
-        for &xi in demand.fresh.of(cell) {
-            if seats[cell].iter().all(|seat| gap(seat.xi, xi) > near) {
-                seats[cell].push(Seat { xi, old: None, is_virtual: false });
+        let near = 0.5 / (required.fresh.of(cell).len() as f64).sqrt();
+        for &xi in required.fresh.of(cell) {
+            if located[cell].iter().all(|point_at| gap(point_at.xi, xi) > near) {
+                located[cell].push(Located { xi, old: None, is_virtual: false });
             }
         }
     }
-    let nodes = demand.line.nodes();
-    for cell in (0..seats.len()).filter(|&cell| changed[cell]) {
-        let (wanted, own) = (&nodes, &seats[cell]);
-        if own.len() <= 2 * wanted.len().max(demand.fresh.of(cell).len()) {
+    let nodes = required.line.nodes();
+    for cell in (0..located.len()).filter(|&cell| changed[cell]) {
+        let (wanted, own) = (&nodes, &located[cell]);
+        if own.len() <= 2 * wanted.len().max(required.fresh.of(cell).len()) {
             continue;
         }
         let nearest = |xi: &[f64; 2]| {
@@ -202,34 +214,35 @@ fn enrich(seats: &mut [Vec<Seat>], changed: &[bool], new: &Grid, demand: &Demand
         let mut chosen: Vec<usize> = wanted.iter().map(nearest).collect();
         chosen.sort_unstable();
         chosen.dedup();
-        let thinned: Vec<Seat> = chosen.into_iter().map(|k| own[k]).collect();
-        let cloud = Cloud { first: vec![0, thinned.len()], xi: thinned.iter().map(|seat| seat.xi).collect() };
+        let thinned: Vec<Located> = chosen.into_iter().map(|k| own[k]).collect();
+        let cloud = Cloud { first: vec![0, thinned.len()], xi: thinned.iter().map(|point_at| point_at.xi).collect() };
         let corners = new.mesh.corners(cell);
         let one = Mesh { nodes: corners.to_vec(), cells: vec![[0, 1, 2, 3]], ..Mesh::default() };
-        if carries(&certify(&one, demand.line, Sampling::Cloud(&cloud))?[0], demand) {
-            seats[cell] = thinned;
+        if carries(&certify(&one, required.line, Sampling::Cloud(&cloud))?[0], required) {
+            located[cell] = thinned;
         }
     }
     Ok(())
 }
 
 /// For each point the old point that it is, or the nearest old point.
-fn sources(old: &Grid, cloud: &Cloud, new: &Grid, seats: &[Vec<Seat>]) -> Result<Vec<usize>, Error> {
-    let is_new = |seats: &Vec<Seat>| seats.iter().any(|seat| seat.old.is_none());
-    let asked = vec![seats.iter().any(is_new); old.material.iter().max().map_or(0, |last| last + 1)];
+fn sources(old: &Grid, cloud: &Cloud, new: &Grid, located: &[Vec<Located>]) -> Result<Vec<usize>, Error> {
+    let is_new = |located: &Vec<Located>| located.iter().any(|point_at| point_at.old.is_none());
+    let asked = vec![located.iter().any(is_new); old.material.iter().max().map_or(0, |last| last + 1)];
     let trees = trees(old.mesh, cloud, old.material, &asked);
     let of = |cell: usize| -> Result<Vec<usize>, Error> {
         let corners = new.mesh.corners(cell);
-        let source = |seat: &Seat| {
-            let near = || trees.get(new.material[cell])?.as_ref()?.nearest_neighbor(map::position(&corners, seat.xi));
-            seat.old.or_else(|| near().map(|point| point.data)).ok_or_else(|| {
+        let source = |point_at: &Located| {
+            let near =
+                || trees.get(new.material[cell])?.as_ref()?.nearest_neighbor(map::position(&corners, point_at.xi));
+            point_at.old.or_else(|| near().map(|point| point.data)).ok_or_else(|| {
                 let what = format!("cell {} has a material that no old point has", new.mesh.number(cell));
                 Error::input(what, "give a mesh with the groups of the old one")
             })
         };
-        seats[cell].iter().map(source).collect()
+        located[cell].iter().map(source).collect()
     };
-    let all = (0..seats.len()).into_par_iter().map(of).collect::<Result<Vec<_>, Error>>()?;
+    let all = (0..located.len()).into_par_iter().map(of).collect::<Result<Vec<_>, Error>>()?;
     Ok(all.concat())
 }
 
@@ -270,7 +283,7 @@ mod tests {
         let fresh = seed(Layout::Paper, 3, case.new.cells.len());
         let line = Line::new(2);
         let (limits, virtual_points) = (Limits::of_degree(2), &[][..]);
-        let demand = Demand {
+        let required = Requirements {
             line: &line,
             policy,
             fresh: &fresh,
@@ -280,7 +293,7 @@ mod tests {
             histories: true,
             on_nodes: &[],
         };
-        (place(&old, &case.cloud, &new, &same, &demand).unwrap(), same)
+        (place(&old, &case.cloud, &new, &same, &required).unwrap(), same)
     }
 
     fn positions(mesh: &Mesh, cloud: &Cloud) -> Vec<[f64; 2]> {

@@ -37,9 +37,9 @@ const EVERY: usize = 32;
 /// What the watch says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Alarm {
-    /// More than [`Limits::warn`]; once in a run.
+    /// Extras than [`Limits::warn`]; once in a run.
     Warning(EnergyMade),
-    /// More than [`Limits::stop`].
+    /// Extras than [`Limits::stop`].
     Stop(EnergyMade),
 }
 

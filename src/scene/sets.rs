@@ -116,18 +116,18 @@ fn put_table(tables: &mut ArrayOfTables, index: usize, value: Value) -> bool {
 }
 
 fn remove_rivals(root: &mut Item, path: &[String]) {
-    let Some((section, rivals)) = EXCLUSIVE.iter().find(|(section, _)| path.first().is_some_and(|key| key == section))
+    let Some((section, others)) = EXCLUSIVE.iter().find(|(section, _)| path.first().is_some_and(|key| key == section))
     else {
         return;
     };
     let depth = if *section == "output" { 2 } else { 1 };
-    let Some(key) = path.get(depth).filter(|key| rivals.contains(&key.as_str())) else { return };
+    let Some(key) = path.get(depth).filter(|key| others.contains(&key.as_str())) else { return };
     let mut table = root.get_mut(*section);
     if depth == 2 {
         table = table.and_then(|list| list.get_mut(path[1].parse::<usize>().ok()?));
     }
     if let Some(table) = table.and_then(Item::as_table_like_mut) {
-        for rival in rivals.iter().filter(|rival| *rival != key) {
+        for rival in others.iter().filter(|rival| *rival != key) {
             table.remove(rival);
         }
     }

@@ -76,7 +76,7 @@ impl Scheme {
         Loss { cell, site: face.site(), kind }
     }
 
-    /// The worst place in a block that is known to be sick: a number that is not finite, else the smallest J where it is not
+    /// The worst place in a block that is known to be lost: a number that is not finite, else the smallest J where it is not
     /// above 0, else the first point where the law is not hyperbolic.
     pub(super) fn find_loss(&self, state: &State, block: usize) -> Loss {
         let blocks = &self.operators.blocks;

@@ -1,7 +1,7 @@
 //! Clouds of all kinds, cells that cannot carry the degree, and the start from a cloud, as scenes ask for them.
 
 use crate::common::{Bench, SCENE, bits};
-use dgmpm::parts::io::cloud_file::{self, More};
+use dgmpm::parts::io::cloud_file::{self, Extras};
 use dgmpm::parts::io::points;
 use dgmpm::parts::mesh::{Mesh, rectangle};
 use dgmpm::parts::operators::Class;
@@ -11,7 +11,7 @@ fn mesh() -> Mesh {
 }
 
 /// What a run folder says of its points.
-fn cloud(bench: &Bench, run: &str) -> (dgmpm::parts::cloud::Cloud, More) {
+fn cloud(bench: &Bench, run: &str) -> (dgmpm::parts::cloud::Cloud, Extras) {
     cloud_file::read_with(&bench.path(run).join("cloud.h5"), &mesh()).unwrap()
 }
 
