@@ -7,7 +7,6 @@ use super::block_energy::BlockEnergy;
 use super::lift::Lift;
 use super::outside::ExternalWork;
 use super::phase::Clock;
-use super::rotation::Rotation;
 use super::sources::SourceEnd;
 use super::sums::Terms;
 use super::survey::{Examine, History};
@@ -192,7 +191,7 @@ impl<const M: usize> Work for Project<'_, '_, M> {
                     curl::relaxation(turn * factor),
                     curl::relaxation((L::splat(curl::DEVIATOR) * prestress).min(c) * factor),
                 ];
-                let rotation = Rotation {
+                let rotation = curl::Rotation {
                     curl_free,
                     block: block.number,
                     law,
