@@ -38,8 +38,8 @@ impl fmt::Display for Place {
     }
 }
 
-/// The one error of the library's surface.
-#[derive(Debug, thiserror::Error)]
+/// The one error of the library's surface. `Debug` prints the message as `Display` does: `main` may return it.
+#[derive(thiserror::Error)]
 pub enum Error {
     /// Input that cannot be used (exit code 2): what is wrong, where, and what would be right.
     #[error("{place}{what}\n  {remedy}")]
@@ -74,6 +74,12 @@ pub enum Error {
         /// The system's reason.
         why: String,
     },
+}
+
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl Error {

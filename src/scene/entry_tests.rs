@@ -192,3 +192,12 @@ fn every_key_of_a_table_out_of_its_range_is_refused() {
     }
     assert!(count > 30, "only {count}");
 }
+
+#[test]
+fn an_empty_list_of_tables_is_refused_at_its_key() {
+    for key in ["rectangles", "strips"] {
+        let text = format!("{SCENE}[[regrid]]\nat = [1e-6]\n{key} = []\n");
+        let why = Scene::parse(&text, Path::new("a.toml"), &[]).unwrap_err().to_string();
+        assert!(why.contains(&format!("`{key}` is an empty list")) && why.contains("at least one"), "{why}");
+    }
+}

@@ -119,6 +119,9 @@ impl Reader<'_> {
             Form::Tables(keys) => {
                 let mut tables = self.tables(key)?;
                 let all = tables.iter_mut().map(|table| table.all(keys)).collect::<Result<Vec<_>>>()?;
+                if all.is_empty() && self.has(key) {
+                    return Err(self.wrong(key, format!("`{key}` is an empty list"), "give at least one table"));
+                }
                 (!all.is_empty()).then_some(Value::Tables(all))
             }
             Form::Or(word, _) if self.is_text(key, word) => self.text(key)?.map(Value::Text),
