@@ -68,6 +68,12 @@ impl Scene {
             let what = "the snapshot has the internal variables of other laws or points".to_owned();
             return Err(fail(what, "give the materials and the cloud of that run"));
         }
+        let wanted: usize = scheme.points_with_memory().iter().map(|point| point.numbers.len()).sum();
+        // A run without such conditions keeps none: theirs is then the memory of a start.
+        if !snapshot.boundary.is_empty() && snapshot.boundary.len() != wanted {
+            let what = "the snapshot has the memory of other boundary conditions".to_owned();
+            return Err(fail(what, "give the [[boundary]] conditions of that run"));
+        }
         // Where no output asks for it, the displacement may count from here: what is held are jumps that come now.
         Ok(unpacked(&snapshot, scheme, self.components()))
     }
