@@ -87,6 +87,7 @@ mod riemann;
 mod boundary;
 mod source;
 mod step;
+mod limiter;
 mod regrid;
 mod io;
 mod chart;
@@ -120,11 +121,14 @@ pub use step::{Control, Loss, Method, Motion, Relax, Scheme, Survey, Sweeps, Tab
 // What a crate may add: laws, fluxes, conditions, sources, corrections, observers.
 pub use boundary::{Absorbing, Boundary, Data, FacePoint, Free, Moment, TimeNode, Traction, Velocity, Wall};
 pub use lane::{F8, Kernel, LANES, Lane, Lanes};
-pub use material::{J2, LinearElastic, Material, NeoHookean, Numbers, Past, PointLaw, Rank, Response, Variable};
+pub use limiter::{Limiter, MomentLimiter, Sensor, VertexLimiter};
+pub use material::{
+    J2, LinearElastic, Material, NeoHookean, Numbers, Past, PointLaw, Rank, Response, StVenantKirchhoff, Variable,
+};
 pub use observe::{Field, NewGrid, Observer, Point, Schedule, Solution, View};
 pub use riemann::{Acoustic, AcousticCurl, Dual, Impedance, Looks, Medium, Riemann, Rusanov, Trace, star};
 pub use source::{BodyForce, Source};
-pub use step::{Balance, Corrected, Correction, Flux, Law, Made};
+pub use step::{Balance, Corrected, Correction, Flux, Law, Made, Notes, Rescue};
 
 // Exact solutions and errors.
 pub use exact::{Errors, Exact, Norms, errors};
@@ -178,6 +182,9 @@ pub mod parts {
     }
     pub mod step {
         pub use crate::step::*;
+    }
+    pub mod limiter {
+        pub use crate::limiter::*;
     }
     pub mod regrid {
         pub use crate::regrid::*;

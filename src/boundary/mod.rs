@@ -76,6 +76,12 @@ pub trait Boundary: Send + Sync {
         &[]
     }
 
+    /// Where the body goes on behind the boundary as its mirror image: the speed of the mirror along N at a time, m/s. Limiters take the
+    /// image for the neighbour. None by default: nothing is known of what lies behind.
+    fn mirror(&self, _x: [f64; 2], _time: f64) -> Option<f64> {
+        None
+    }
+
     /// Flux*.N at a face point, in the order of U. Called once a point and stage. `memory` are the numbers of that point, as the
     /// stage before has left them.
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, memory: &mut [f64]) -> [f64; 6];

@@ -18,6 +18,10 @@ pub struct Wall {
 const IMAGE: f64 = 2.0;
 
 impl Boundary for Wall {
+    fn mirror(&self, x: [f64; 2], time: f64) -> Option<f64> {
+        Some(self.speed.as_ref().map_or(0.0, |speed| speed(x, time)))
+    }
+
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, _: &mut [f64]) -> [f64; 6] {
         let (n, t) = (at.normal, tangent(at.normal));
         let wall = self.speed.as_ref().map_or(0.0, |speed| mean(speed, at.x, when));

@@ -5,8 +5,8 @@
 //! p2 at the Gauss nodes (node i along xi1, j along xi2); `displacement` (cells, 2, M, M) or empty; `internal` (n), the
 //! internal variables point by point: cells in the order of the mesh, points in that of the cloud (nodes a = i M + j for
 //! ADER-DGFEM and RK-DGFEM), variables in that of the cell's law, which may have none; `boundary` (n), the memory of boundary
-//! conditions, likewise. Attributes `mesh`,
-//! `cloud`: the files of the run folder that the state lives on.
+//! conditions, likewise; `corrected`, `rescued` (cells), what a limiter and the rescue did, where the run has one. Attributes
+//! `mesh`, `cloud`: the files of the run folder that the state lives on.
 
 use std::path::{Path, PathBuf};
 
@@ -39,6 +39,10 @@ pub struct Snapshot {
     /// The memory of boundary conditions, cells in the order of the mesh, faces, points along the face, numbers; none for
     /// conditions without memory.
     pub boundary: Vec<f64>,
+    /// Of each cell, 1 where a limiter or another correction changed it in the last step; empty where there is none.
+    pub corrected: Vec<f64>,
+    /// Of each cell, in how many steps since this grid began it was stepped again at order 0; empty as `corrected`.
+    pub rescued: Vec<f64>,
     /// The files of its grid.
     pub grid: GridFiles,
 }
@@ -100,6 +104,15 @@ impl Snapshot {
         }
         let wanted = 2 * nodes * self.cells();
         let given = self.displacement.len();
+        for treated in [&self.corrected, &self.rescued].into_iter().filter(|treated| !treated.is_empty()) {
+            if treated.len() != self.cells() {
+                return Some(format!(
+                    "{} numbers of corrected or rescued cells instead of {}",
+                    treated.len(),
+                    self.cells()
+                ));
+            }
+        }
         let unheld = self.unheld.len();
         if unheld != 0 && unheld != wanted {
             return Some(format!("{unheld} displacements that are not held instead of {wanted} or none"));
@@ -128,6 +141,10 @@ impl Snapshot {
         if !self.boundary.is_empty() {
             arrays.push(("boundary", vec![self.boundary.len()], ArrayRef::F64(&self.boundary)));
         }
+        if !self.corrected.is_empty() {
+            arrays.push(("corrected", vec![self.corrected.len()], ArrayRef::F64(&self.corrected)));
+            arrays.push(("rescued", vec![self.rescued.len()], ArrayRef::F64(&self.rescued)));
+        }
         write_arrays(path, FORMAT, &[("mesh", self.grid.mesh.clone()), ("cloud", self.grid.cloud.clone())], &arrays)
     }
 
@@ -149,11 +166,17 @@ impl Snapshot {
         let grid = GridFiles { mesh: name("mesh", mesh), cloud: name("cloud", cloud) };
         // Files of earlier versions have no `unheld`, and those of runs without such a memory no `boundary`.
         let knows = |name: &str| store.names().any(|known| known == name);
-        let known = [knows("unheld"), knows("boundary")];
+        let known = [knows("unheld"), knows("boundary"), knows("corrected") && knows("rescued")];
         let unheld = if known[0] { store.reals("unheld", &[2, side, side])? } else { vec![] };
         let boundary = if known[1] { store.reals("boundary", &[])? } else { vec![] };
+        let [corrected, rescued] = match known[2] {
+            true => [store.reals("corrected", &[])?, store.reals("rescued", &[])?],
+            false => [vec![], vec![]],
+        };
         Ok(Self {
             grid,
+            corrected,
+            rescued,
             unheld,
             boundary,
             time: store.real("time")?,

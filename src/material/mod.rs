@@ -7,6 +7,7 @@ mod j2;
 mod linear;
 mod neo_hookean;
 mod point;
+mod st_venant_kirchhoff;
 
 pub(crate) use history::is_declared_whole;
 pub use history::{Numbers, Past, Rank, Variable, count, virgin};
@@ -14,6 +15,7 @@ pub use j2::J2;
 pub use linear::LinearElastic;
 pub use neo_hookean::NeoHookean;
 pub use point::{PointLaw, Response};
+pub use st_venant_kirchhoff::StVenantKirchhoff;
 
 use crate::lane::Lane;
 use crate::tensor;

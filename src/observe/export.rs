@@ -3,6 +3,7 @@
 use super::{Field, Solution};
 use crate::cloud::Cloud;
 use crate::io::grid::{self, HighOrderGrid, Kind, PointCloud, lagrange_quad_nodes};
+use crate::io::snapshot::Snapshot;
 use crate::mesh::{Mesh, map};
 use crate::operators::Certificate;
 
@@ -74,4 +75,12 @@ pub fn cell_fields(mesh: &Mesh, certificates: &[Certificate], material: &[usize]
         scalar("class", &|cell| certificates[cell].class as usize as f64),
         scalar("dt", &|cell| certificates[cell].dt),
     ]
+}
+
+/// Cell fields of a run with a limiter or a rescue: `corrected`, 1 where a limiter or another correction changed the cell in the last step; `rescued`, in how
+/// many steps the cell was stepped again at order 0.
+pub fn treated_fields(snapshot: &Snapshot) -> Vec<grid::Field> {
+    let all = [("corrected", &snapshot.corrected), ("rescued", &snapshot.rescued)].into_iter();
+    let there = all.filter(|(_, values)| !values.is_empty());
+    there.map(|(name, values)| grid::Field::new(name, Kind::Scalar, values.clone())).collect()
 }

@@ -28,8 +28,11 @@ const DISSIPATED: &str = "material_dissipation";
 
 /// The last column, if the scene changes its grid: the energy that these changes have lost since the start of the run.
 const REGRIDS: &str = "regrid_dissipation";
-/// The last column of a run with corrections.
+/// The next column of a run with corrections.
 const CORRECTIONS: &str = "correction_dissipation";
+/// The last columns of a run with corrections or a rescue: how many cells a correction changed in the last step, and how often cells
+/// were stepped again at order 0 since this grid began.
+const TREATED: [&str; 2] = ["corrected_cells", "rescued_cells"];
 
 /// The columns of the balance, after those before. All but the last are cumulated since the start of the run.
 const BALANCE: [&str; 7] = [
@@ -53,7 +56,7 @@ pub struct Contents {
     pub balance: bool,
     /// With the balance: the energy that changes of grid have lost.
     pub regrids: bool,
-    /// With the balance: the energy that corrections of the state have taken.
+    /// The cells that corrections and the rescue treat; with the balance, the energy that they have taken.
     pub corrections: bool,
 }
 
@@ -77,6 +80,7 @@ impl Ledger {
         columns.extend(BALANCE.iter().filter(|_| balance));
         columns.extend((balance && regrids).then_some(REGRIDS));
         columns.extend((balance && corrections).then_some(CORRECTIONS));
+        columns.extend(TREATED.iter().filter(|_| corrections));
         Ok(Self { schedule, contents, table: Table::create(path, &columns)? })
     }
 }
@@ -92,6 +96,15 @@ fn columns(balance: &Balance, totals: &Totals) -> [f64; BALANCE.len()] {
         balance.remainder(totals.accounted()),
         totals.angular_momentum.unwrap_or(f64::NAN),
     ]
+}
+
+/// The numbers of [`TREATED`].
+fn treated(view: &View) -> [f64; TREATED.len()] {
+    let mut sums = [0.0; TREATED.len()];
+    for (cells, &count) in view.treated.as_chunks::<2>().0.iter().zip(&view.scheme.operators.blocks.count) {
+        sums.iter_mut().zip(cells).for_each(|(sum, lanes)| *sum += lanes.0[..count].iter().sum::<f64>());
+    }
+    sums
 }
 
 impl Observer for Ledger {
@@ -124,6 +137,9 @@ impl Observer for Ledger {
             row.extend(columns(balance, &totals));
             row.extend(self.contents.regrids.then_some(balance.regrid_dissipation));
             row.extend(self.contents.corrections.then_some(balance.correction_dissipation));
+        }
+        if self.contents.corrections {
+            row.extend(treated(view));
         }
         self.table.push(&row)?;
         // Each row is written to the disk at once, so that a killed run leaves its history.

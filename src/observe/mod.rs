@@ -18,6 +18,7 @@ pub use solution::{Point, Solution};
 
 use crate::error::Error;
 use crate::io::snapshot::GridFiles;
+use crate::lane::F8;
 use crate::mesh::Mesh;
 use crate::state::State;
 use crate::step::{Balance, EnergyMade, Scheme, Survey};
@@ -35,6 +36,8 @@ pub struct View<'a> {
     pub survey: &'a Survey,
     /// The balance of energy since the start; `None` if no observer needs it.
     pub balance: Option<&'a Balance>,
+    /// What a limiter and the rescue did in each cell, see [`crate::step::Work::treated`]; empty where the scheme has neither.
+    pub treated: &'a [F8],
     /// The step that follows, s; 0 at the end of the run.
     pub dt: f64,
 }

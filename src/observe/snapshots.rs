@@ -27,13 +27,25 @@ impl Observer for Snapshots {
     }
 
     fn observe(&mut self, view: &View) -> Result<(), Error> {
-        write(view.scheme, view.state, &self.grid, &self.folder).map(|_| ())
+        let Snapshot { corrected, rescued, .. } = treated(view);
+        let path = snapshot::path(&self.folder, view.state.step);
+        Snapshot { corrected, rescued, grid: self.grid.clone(), ..take(view.scheme, view.state) }.write(&path)
     }
 
     fn regrid(&mut self, grid: &NewGrid) -> Result<(), Error> {
         self.grid = grid.files.clone();
         Ok(())
     }
+}
+
+/// What a limiter and the rescue did in the cells, in the order of the mesh.
+fn treated(view: &View) -> Snapshot {
+    let cells = match view.treated.is_empty() {
+        true => vec![],
+        false => view.scheme.operators.blocks.unpack(view.treated, 2),
+    };
+    let of = |k: usize| cells.iter().skip(k).step_by(2).copied().collect();
+    Snapshot { corrected: of(0), rescued: of(1), ..Snapshot::default() }
 }
 
 /// Writes a state into a folder of snapshots. Returns the path of the file.

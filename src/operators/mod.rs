@@ -31,6 +31,9 @@ use crate::error::Error;
 use crate::mesh::{FACES, Link, Mesh};
 use crate::quadrature::legendre;
 
+/// Nodes of a cell of the largest degree that steps are compiled for, 6.
+pub const MOST_NODES: usize = 49;
+
 /// Everything that the step needs of mesh and cloud.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Operators {
@@ -94,6 +97,18 @@ impl Operators {
         let Some(points) = &self.points else { return self.line.nodes() };
         let at = |p: usize| [0, 1].map(|k| points.parent[2 * (points.first[block] + p) + k].0[lane]);
         (0..points.count[block][lane] as usize).map(at).collect()
+    }
+
+    /// w_a J_a of the nodes of a cell, m^2: its mass matrix. Zeros after the last node.
+    pub fn node_weights(&self, block: usize, lane: usize) -> [f64; MOST_NODES] {
+        let (metric, basis) = (self.geometry.blocks[block].lane(lane), &self.line.basis);
+        let mut out = [0.0; MOST_NODES];
+        for (a, weight) in out.iter_mut().enumerate().take(self.nodes()) {
+            let (i, j) = (a / self.line.m, a % self.line.m);
+            let jacobian = determinant(metric.cofactor1(basis.nodes[i]), metric.cofactor2(basis.nodes[j]));
+            *weight = basis.weights[i] * basis.weights[j] * jacobian;
+        }
+        out
     }
 
     /// Bytes held by matrices and metric terms.

@@ -14,7 +14,7 @@ use crate::run::Limits as WatchLimits;
 use crate::run::Settings;
 use crate::scene::{self, Boundary, Mesh as Source, Scene, Step};
 use crate::source;
-use crate::step::{Control, Law, Method as Integration, Scheme, cfl};
+use crate::step::{Control, Correction, Law, Method as Integration, Rescue, Scheme, cfl};
 use std::sync::Arc;
 
 impl Scene {
@@ -115,12 +115,20 @@ impl Scene {
         }
         let (laws, flux) = (self.laws(), (self.scheme.flux.build().make)());
         let scheme = Scheme::new(operators, laws, self.integration(), flux, boundaries)?;
-        let scheme = scheme.with_sources(sources).with_kernel(kernel);
+        let scheme = scheme.with_sources(sources).with_corrections(self.limiters()).with_kernel(kernel);
+        let scheme = scheme.with_rescue(self.limiter.values.boolean("rescue").then(Rescue::default));
         // Constants have no curl.
         match curl.filter(|_| self.scheme.degree > 0) {
             Some(control) => scheme.with_curl(control),
             None => Ok(scheme),
         }
+    }
+
+    /// The limiter of the scene, where it has one: constants have no slopes.
+    fn limiters(&self) -> Vec<Arc<dyn Correction>> {
+        let (values, degree) = (&self.limiter.values, self.scheme.degree);
+        let make = self.limiter.build().make.filter(|_| degree > 0);
+        make.map(|make| make(values, degree)).into_iter().collect()
     }
 
     fn source(&self, source: &scene::Source) -> Arc<dyn source::Source> {

@@ -33,6 +33,18 @@ struct GridOfRun {
     cell_fields: Vec<Values>,
 }
 
+/// A snapshot that is shown.
+struct Shown<'a> {
+    step: usize,
+    time: f64,
+    body: &'a Body,
+    /// Whether it is the first on its grid.
+    is_new: bool,
+    solution: &'a Solution<'a>,
+    /// The fields of the grid, and those of the cells at this time.
+    cell_fields: Vec<Values>,
+}
+
 impl Export {
     /// The snapshots of the folder of a run.
     ///
@@ -82,8 +94,8 @@ impl Export {
         grid_of_run.body.material.iter().enumerate().map(of).sum()
     }
 
-    /// Reads the snapshots, each with its own grid, and hands their solutions to `use_it`, with whether the grid is new.
-    fn each(&self, mut use_it: impl FnMut(usize, &GridOfRun, &Solution, f64, bool) -> Result<()>) -> Result<()> {
+    /// Reads the snapshots, each with its own grid, and shows them.
+    fn each(&self, mut show: impl FnMut(Shown) -> Result<()>) -> Result<()> {
         let mut last: Option<GridOfRun> = None;
         for (step, path) in &self.files {
             let snapshot = Snapshot::read(path)?;
@@ -103,7 +115,10 @@ impl Export {
                 &grid_of_run.body.material,
                 &grid_of_run.places,
             );
-            use_it(*step, &grid_of_run, &solution, snapshot.time, is_new)?;
+            let cell_fields =
+                grid_of_run.cell_fields.iter().cloned().chain(export::treated_fields(&snapshot)).collect();
+            let (time, body) = (snapshot.time, &grid_of_run.body);
+            show(Shown { step: *step, time, body, is_new, solution: &solution, cell_fields })?;
             last = Some(grid_of_run);
         }
         Ok(())
@@ -121,12 +136,12 @@ impl Export {
     /// A snapshot that does not belong to the run; a file that cannot be written.
     pub fn vtu(&self) -> Result<()> {
         let (mut grids, mut points) = (Vec::new(), Vec::new());
-        self.each(|step, grid_of_run, solution, time, _| {
+        self.each(|Shown { step, time, body, solution, cell_fields, .. }| {
             let (grid_path, point_path) =
                 (self.out.join(format!("grid_{step:06}.vtu")), self.out.join(format!("points_{step:06}.vtu")));
-            let (fields, body) = (self.fields(solution), &grid_of_run.body);
+            let fields = self.fields(solution);
             let mut grid = export::grid(&body.mesh, solution, &fields);
-            grid.cell_fields = grid_of_run.cell_fields.clone();
+            grid.cell_fields = cell_fields;
             vtu::write_grid(&grid_path, &grid)?;
             vtu::write_points(
                 &point_path,
@@ -149,8 +164,8 @@ impl Export {
         xdmf::write_mesh(&self.out.join("mesh.xdmf"), &first)?;
         xdmf::write_boundary(&self.out.join("boundary.xdmf"), &first)?;
         let mut series: Option<xdmf::Series> = None;
-        self.each(|_, grid_of_run, solution, time, is_new| {
-            let grid = export::grid(&grid_of_run.body.mesh, solution, &self.fields(solution));
+        self.each(|Shown { time, body, is_new, solution, cell_fields, .. }| {
+            let grid = export::grid(&body.mesh, solution, &self.fields(solution));
             let series = match &mut series {
                 Some(series) => {
                     if is_new {
@@ -160,7 +175,7 @@ impl Export {
                 }
                 none => none.insert(xdmf::Series::create(&self.out.join("series.xdmf"), &grid)?),
             };
-            series.push(time, &grid.point_fields, &grid_of_run.cell_fields)
+            series.push(time, &grid.point_fields, &cell_fields)
         })?;
         series.map_or(Ok(()), xdmf::Series::finish)
     }

@@ -179,7 +179,8 @@ impl<'a> Setup<'a> {
             Some(store) => store.operators(scene, body)?,
             None => (body.operators(scene)?, String::new()),
         };
-        let scheme = scene.build_scheme(&body.mesh, operators, kernel)?.with_corrections(corrections);
+        let mut scheme = scene.build_scheme(&body.mesh, operators, kernel)?;
+        scheme.corrections.extend(corrections);
         Ok((scheme, origin))
     }
 

@@ -62,7 +62,7 @@ impl Problem {
             drift: state.has_displacement(),
             dissipated: !scheme.histories.is_empty(),
             regrids: !scene.regrids.is_empty(),
-            corrections: !scheme.corrections.is_empty(),
+            corrections: !scheme.corrections.is_empty() || scheme.rescue.is_some(),
             balance: false,
         };
         let (mesh, material) = (&body.mesh, &body.material[..]);

@@ -16,6 +16,9 @@ pub struct Flux {
 /// The flux of a scene that names none.
 pub const DEFAULT: &str = "dual";
 
+/// The same in words, see [`super::limiters::Kind::flux`].
+pub const DEFAULTS: &str = "dual; rusanov with a limiter and laws without memory";
+
 const WITH_MEMORY: &str = "makes energy where a law with memory flows";
 
 const OTHER: &str = "scheme.flux = \"rusanov\" damps all jumps of F, and holds some corners that are crushed";

@@ -1,7 +1,7 @@
 //! The material laws, `[[material]] law = ..`.
 
 use super::{ANY, Check, Entry, Form, NOT_NEGATIVE, POSITIVE, Parameter, Table, Values};
-use crate::material::{J2, LinearElastic, NeoHookean};
+use crate::material::{J2, LinearElastic, NeoHookean, StVenantKirchhoff};
 use crate::step::Law;
 
 /// Makes a law from its parameters.
@@ -32,6 +32,13 @@ pub static LAWS: Table<Build> = Table::new(&[
         parameters: &[YOUNG, POISSON, DENSITY],
         check: ANY,
         build: |of| Law::new(LinearElastic::new(of.number("young"), of.number("poisson"), of.number("density"))),
+    },
+    Entry {
+        name: "st-venant-kirchhoff",
+        about: "St. Venant-Kirchhoff, Hooke's law in Green's strain; stiffens in tension, loses hyperbolicity in compression",
+        parameters: &[YOUNG, POISSON, DENSITY],
+        check: ANY,
+        build: |of| Law::new(StVenantKirchhoff::new(of.number("young"), of.number("poisson"), of.number("density"))),
     },
     Entry {
         name: "j2",

@@ -3,7 +3,7 @@
 //!
 //! An entry is the only place that names a thing. What reads scenes, checks them, answers "did you mean", lists what there
 //! is in messages and writes `docs/scene.md` follows from the entries; so does the problem that a scene becomes. A new law,
-//! condition, source, flux, exact solution, output, grid, layout or control of the curl is a file with a type and one entry
+//! condition, source, flux, exact solution, output, grid, layout, limiter or control of the curl is a file with a type and one entry
 //! here (`docs/extend.md`). A program that uses the crate adds entries of its own by [`Table::add`].
 //!
 //! ```
@@ -19,6 +19,7 @@ pub mod fluxes;
 pub mod grids;
 pub mod laws;
 pub mod layouts;
+pub mod limiters;
 pub mod methods;
 pub mod outputs;
 mod parameter;
@@ -35,6 +36,7 @@ pub use fluxes::FLUXES;
 pub use grids::GRIDS;
 pub use laws::LAWS;
 pub use layouts::LAYOUTS;
+pub use limiters::LIMITERS;
 pub use methods::{METHODS, Method, Sweeps};
 pub use outputs::OUTPUTS;
 pub use parameter::*;

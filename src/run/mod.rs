@@ -5,12 +5,14 @@ mod kept;
 mod norms;
 mod report;
 mod rows;
+mod treated;
 mod watch;
 
 pub use folder::Folder;
 pub use kept::{Kept, Lost};
 pub use norms::norms;
 pub use report::{Report, dofs, peak_memory_mib};
+pub use treated::Treated;
 pub use watch::{Limits, Watch};
 
 use crate::error::Error;
@@ -188,7 +190,8 @@ impl Run<'_, '_> {
 
 /// What observers and pauses see before a step of `dt`.
 fn view<'a>(mesh: &'a Mesh, scheme: &'a Scheme, motion: &'a Motion, balance: Option<&'a Balance>, dt: f64) -> View<'a> {
-    View { mesh, scheme, state: &motion.state, survey: &motion.survey, balance, dt }
+    let treated = motion.work.treated();
+    View { mesh, scheme, state: &motion.state, survey: &motion.survey, balance, treated, dt }
 }
 
 /// The time after a step: one that is meant to end at the end of the run or at an exact time ends there to the last bit.

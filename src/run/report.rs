@@ -1,7 +1,7 @@
 //! What a run cost and what became of energy and momentum: the table at its end and `summary.json`.
 
-use super::Kept;
 use super::watch::{Alarm, Limits, Watch};
+use super::{Kept, Treated};
 use crate::state::{State, UNKNOWNS};
 use crate::step::phase::{NAMES, Phases};
 use crate::step::{Balance, Motion, Scheme, Survey, Totals};
@@ -26,6 +26,8 @@ pub struct Report {
     pub balance: Option<Balance>,
     /// The work done on the body, and the energy that was made out of nothing.
     pub watch: Watch,
+    /// The cells that a limiter and the rescue have changed; none where the scheme has neither.
+    pub treated: Option<Treated>,
     /// The smallest J that was seen in a state of the run, at its points, grid nodes and face points.
     pub min_j: f64,
     /// Bytes of operators, state and work.
@@ -49,6 +51,7 @@ impl Default for Report {
             last: None,
             balance: None,
             watch: Watch::default(),
+            treated: None,
             min_j: f64::INFINITY,
             bytes: 0,
             wall: 0.0,
@@ -70,6 +73,7 @@ impl Report {
             self.balance = work.has_balance().then(|| Balance::starting_at(first.accounted()));
             self.watch = Watch::new(scheme, &first, limits);
             self.min_j = self.min_j.min(first.min_j);
+            self.treated = Treated::of(scheme);
             self.first = Some(first);
         }
         let (start, state) = (state, size_of_val(&state.u[..]) + size_of_val(&state.internal[..]));
@@ -86,6 +90,9 @@ impl Report {
         self.phases.add(&work.take_phases());
         if let Some(balance) = &mut self.balance {
             work.settle(scheme, balance);
+        }
+        if let Some(treated) = &mut self.treated {
+            treated.count(work.counts(), scheme.operators.blocks.slot.len());
         }
         self.watch.step(scheme, state, work, self.balance.as_ref())
     }
@@ -166,6 +173,9 @@ impl Report {
         if let Some(balance) = &self.balance {
             pairs.push(("balance", balance_json(balance, last.accounted())));
         }
+        if let Some(treated) = &self.treated {
+            pairs.push(("treated_cells", treated.json()));
+        }
         let first = self.first.and_then(|first| first.angular_momentum);
         if let Some((first, last)) = first.zip(last.angular_momentum) {
             pairs.push(("angular_momentum", json!([first, last])));
@@ -191,6 +201,7 @@ fn balance_json(balance: &Balance, energy: f64) -> Value {
         "boundary_dissipation": balance.boundary_dissipation,
         "curl_dissipation": balance.curl_dissipation,
         "regrid_dissipation": balance.regrid_dissipation,
+        "correction_dissipation": balance.correction_dissipation,
         "remainder": balance.remainder(energy),
         "jumps": balance.jumps,
     })

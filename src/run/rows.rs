@@ -45,6 +45,7 @@ impl Report {
             Some(balance) => rows.extend(balance_rows(balance)),
             None => rows.extend(work_rows(self.watch.work)),
         }
+        rows.extend(self.treated.iter().flat_map(|treated| treated.rows()));
         let made = self.watch.made;
         if self.watch.warned() {
             rows.push(row("energy made", format!("{:.3e} J/m, {:.2} %", made.joule, 100.0 * made.share)));

@@ -26,7 +26,7 @@ use toml_edit::{Document, DocumentMut};
 use crate::error::{Error, Place, Result};
 use crate::expression::Expression;
 use crate::registry::controls::Control;
-use crate::registry::{self, Chosen, Method, Sweeps};
+use crate::registry::{self, Chosen, Method, Sweeps, limiters};
 pub use names::Histories;
 use origin::{Origin, Part};
 pub use reference::reference;
@@ -54,6 +54,8 @@ pub struct Scene {
     pub sources: Vec<Source>,
     /// The control of the curl of F.
     pub curl: Chosen<Control>,
+    /// The limiter and the rescue of cells.
+    pub limiter: Chosen<limiters::Kind>,
     /// Method, degrees, flux, step size.
     pub scheme: Scheme,
     /// Time of the initial state, in s; default 0.
@@ -182,7 +184,7 @@ pub struct Scheme {
     pub degree: usize,
     /// N_T, degree in time, 0 to 6; default N.
     pub time_degree: usize,
-    /// The flux on inner faces; default dual.
+    /// The flux on inner faces; default dual, with a limiter rusanov.
     pub flux: Chosen<registry::fluxes::Flux>,
     /// The size of a step.
     pub step: Step,

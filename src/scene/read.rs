@@ -8,7 +8,8 @@ use super::{Boundary, Cloud, Exact, Initial, Material, Mesh, Scene, Scheme, Sour
 use crate::error::Result;
 use crate::expression::Expression;
 use crate::registry::{
-    CONDITIONS, CONTROLS, Chosen, FLUXES, LAWS, METHODS, SOLUTIONS, SOURCES, Sweeps, controls, defaults, laws,
+    CONDITIONS, CONTROLS, Chosen, Entry, FLUXES, LAWS, LIMITERS, METHODS, Parameter, SOLUTIONS, SOURCES, Sweeps, Table,
+    controls, defaults, fluxes, laws, limiters,
 };
 use std::path::PathBuf;
 use toml_edit::Document;
@@ -16,7 +17,7 @@ use toml_edit::Document;
 /// Reads a whole scene.
 pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> {
     let mut root = Reader::new(document.as_table(), Vec::new(), &origin, "the scene".to_owned());
-    root.later(&["limiter", "checkpoint"]);
+    root.later(&["checkpoint"]);
     let title = root.text("title")?;
     let mut mesh_table = root.table("mesh")?;
     let mut cloud_table = root.table("cloud")?;
@@ -26,6 +27,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     let boundary_tables = root.tables("boundary")?;
     let source_tables = root.tables("source")?;
     let mut curl_table = root.table("curl")?;
+    let mut limiter_table = root.table("limiter")?;
     let mut scheme_table = root.table("scheme")?;
     let mut time_table = root.table("time")?;
     let mut watch_table = root.table("watch")?;
@@ -35,13 +37,21 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
 
     let need = |key: &'static str, remedy: &str| root.missing(key, remedy);
     let mesh = mesh(mesh_table.as_mut().ok_or_else(|| need("mesh", "add [mesh] with file = \"name.msh\""))?)?;
-    let scheme = scheme(scheme_table.as_mut().ok_or_else(|| need("scheme", "add [scheme] with method and degree"))?)?;
+    let mut scheme =
+        scheme(scheme_table.as_mut().ok_or_else(|| need("scheme", "add [scheme] with method and degree"))?)?;
     let degree = scheme.degree;
     let general = super::points::cloud(cloud_table.as_mut(), degree)?;
     if material_tables.is_empty() {
         return Err(need("material", "add [[material]] with law, density and the law's parameters"));
     }
     let materials = materials(&mut material_tables, &general, degree)?;
+    let limiter = chosen(limiter_table.as_mut(), &tables::LIMITER[0], (&LIMITERS, limiters::DEFAULT), degree)?;
+    let names_a_flux = scheme_table.is_some_and(|table| table.has("flux"));
+    let remembers = materials.iter().any(|material| laws::has_memory(material.law.entry));
+    if let Some(entry) = limiter.build().flux.filter(|_| !names_a_flux && !remembers).and_then(|name| FLUXES.find(name))
+    {
+        scheme.flux = Chosen { entry, values: Default::default() };
+    }
     let (start, end) = time(time_table.as_mut().ok_or_else(|| need("time", "add [time] with end, in s"))?)?;
     let scene = Scene {
         title: title.unwrap_or_else(|| origin.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),
@@ -52,7 +62,8 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         exact: exact(exact_table.as_mut(), initial_table.is_none(), degree)?,
         boundaries: boundaries(boundary_tables, degree)?,
         sources: source_tables.into_iter().map(|table| source(table, degree)).collect::<Result<_>>()?,
-        curl: curl(curl_table.as_mut(), degree)?,
+        curl: chosen(curl_table.as_mut(), &tables::CURL[0], (&CONTROLS, controls::DEFAULT), degree)?,
+        limiter,
         scheme,
         start,
         end,
@@ -86,7 +97,8 @@ fn scheme(table: &mut Reader) -> Result<Scheme> {
     let mut values = table.values(tables::SCHEME)?;
     table.finish()?;
     table.complete(tables::SCHEME, &mut values, 0)?;
-    let (method, flux) = (METHODS.find(values.text("method")), FLUXES.find(values.text("flux")));
+    let (method, flux) =
+        (METHODS.find(values.text("method")), FLUXES.find(values.maybe_text("flux").unwrap_or(fluxes::DEFAULT)));
     // Both names have been found in their lists.
     let method = method.unwrap_or(METHODS.first()).build.method;
     let flux = Chosen { entry: flux.unwrap_or(FLUXES.first()), values: Default::default() };
@@ -252,12 +264,18 @@ fn source(mut table: Reader, degree: usize) -> Result<Source> {
     Ok(Source { group, source: table.rest(entry, degree)? })
 }
 
-fn curl(table: Option<&mut Reader>, degree: usize) -> Result<Chosen<controls::Control>> {
-    let default = CONTROLS.find(controls::DEFAULT).unwrap_or(CONTROLS.first());
+/// The entry that a table chooses by `key`, with the values of its parameters; that of the default where there is no such table.
+fn chosen<B>(
+    table: Option<&mut Reader>,
+    key: &Parameter,
+    (entries, default): (&'static Table<B>, &str),
+    degree: usize,
+) -> Result<Chosen<B>> {
+    let default = entries.find(default).unwrap_or(entries.first());
     let Some(table) = table else {
         return Ok(Chosen { entry: default, values: defaults(default.parameters, degree) });
     };
-    let entry = table.maybe_entry(&tables::CURL[0], &CONTROLS)?;
+    let entry: Option<&'static Entry<B>> = table.maybe_entry(key, entries)?;
     table.rest(entry.unwrap_or(default), degree)
 }
 

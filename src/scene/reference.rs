@@ -4,8 +4,8 @@
 use super::tables;
 use crate::expression::FUNCTIONS;
 use crate::registry::{
-    CONDITIONS, CONTROLS, Entry, FLUXES, Form, GRIDS, LAWS, LAYOUTS, METHODS, OUTPUTS, Parameter, Preset, SOLUTIONS,
-    SOURCES, Table,
+    CONDITIONS, CONTROLS, Entry, FLUXES, Form, GRIDS, LAWS, LAYOUTS, LIMITERS, METHODS, OUTPUTS, Parameter, Preset,
+    SOLUTIONS, SOURCES, Table,
 };
 
 /// The whole page, in Markdown.
@@ -66,6 +66,10 @@ fn all(page: &mut String) {
     head(page, "[curl]", "The control of the part of F that is not a gradient, see method.md.");
     keys(page, tables::CURL);
     entries(page, "control", &CONTROLS, |_| String::new());
+    let about = "What is cut in cells at shocks, and whether lost cells are stepped again; none by default. method.md describes both.";
+    head(page, "[limiter]", about);
+    keys(page, tables::LIMITER);
+    entries(page, "kind", &LIMITERS, |_| String::new());
     head(page, "[time]", "The table is required.");
     keys(page, tables::TIME);
     head(page, "[watch]", "The watch over the energy, see run.md.");

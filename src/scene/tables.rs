@@ -6,7 +6,7 @@ use crate::registry::{
     AT_LEAST_1, Check, FINITE, FLUXES, Form, METHODS, NOT_NEGATIVE, POSITIVE, Parameter, Policy, Preset, SHARE, Sweeps,
     controls, fluxes,
 };
-use crate::registry::{CONDITIONS, CONTROLS, LAWS, LAYOUTS, OUTPUTS, SOLUTIONS, SOURCES, grids};
+use crate::registry::{CONDITIONS, CONTROLS, LAWS, LAYOUTS, LIMITERS, OUTPUTS, SOLUTIONS, SOURCES, grids, limiters};
 
 const fn key(name: &'static str, about: &'static str, unit: &'static str, form: Form, default: Preset) -> Parameter {
     Parameter { name, about, unit, form, default }
@@ -159,7 +159,7 @@ pub(super) const SCHEME: &[Parameter] = &[
     needed("method", "the method", "", Form::Name(|| METHODS.names(), &[])),
     needed("degree", "degree N of the polynomials in space", "", DEGREE),
     key("time_degree", "degree N_T in time", "", DEGREE, Preset::Absent("`degree`")),
-    key("flux", "the flux on inner faces", "", Form::Name(|| FLUXES.names(), &[]), Preset::Name(fluxes::DEFAULT)),
+    key("flux", "the flux on inner faces", "", Form::Name(|| FLUXES.names(), &[]), Preset::Absent(fluxes::DEFAULTS)),
     key(
         "cfl",
         "size of the time step: dt = cfl h / ((2N+1) c); a step beyond the stability limit is an error",
@@ -185,6 +185,9 @@ pub(super) const SCHEME: &[Parameter] = &[
 
 pub(super) const CURL: &[Parameter] =
     &[key("control", "the control", "", Form::Name(|| CONTROLS.names(), &["auto"]), Preset::Name(controls::DEFAULT))];
+
+pub(super) const LIMITER: &[Parameter] =
+    &[key("kind", "the limiter", "", Form::Name(|| LIMITERS.names(), &[]), Preset::Name(limiters::DEFAULT))];
 
 pub(super) const TIME: &[Parameter] = &[
     key("start", "time of the initial state", "s", Form::Number(FINITE), Preset::Number(0.0)),

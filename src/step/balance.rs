@@ -53,7 +53,7 @@ pub struct Balance {
     pub boundary_dissipation: f64,
     /// Loss by the control of the curl: the energy before minus that after.
     pub curl_dissipation: f64,
-    /// Loss by corrections ([`super::Correction`]): the energy before them minus that after; of either sign.
+    /// Loss by corrections ([`super::Correction`]) and the rescue ([`super::Rescue`]): the energy before them minus that after; of either sign.
     pub correction_dissipation: f64,
     /// Loss by regrids: the energy on the old grid minus that on the new one; of either sign for the strain energy.
     pub regrid_dissipation: f64,
@@ -185,10 +185,10 @@ impl Work {
         balance.boundary_work += by_boundary;
         balance.source_work += by_sources;
         balance.jumps += flux + boundary;
-        let corrections = self.corrections.as_ref().map_or(0.0, |memory| memory.loss);
-        balance.correction_dissipation += corrections;
-        balance.curl_dissipation += corrected - (energy + corrections);
-        let lost = balance.energy + (by_boundary + by_sources) - corrected;
+        let [before, after] = self.corrections.as_ref().map_or([0.0; 2], |memory| memory.loss);
+        balance.correction_dissipation += before + after;
+        balance.curl_dissipation += corrected - (energy + after);
+        let lost = balance.energy - before + (by_boundary + by_sources) - corrected;
         let all = flux.abs() + boundary.abs();
         let at_boundary = if all > 0.0 { lost * (boundary.abs() / all) } else { 0.0 };
         balance.boundary_dissipation += at_boundary;

@@ -99,7 +99,7 @@ impl Scheme {
     }
 
     /// All losses of a lane at its nodes and points.
-    fn losses(&self, state: &State, block: usize, lane: usize, see: &mut dyn FnMut(Site, LossKind)) {
+    pub(super) fn losses(&self, state: &State, block: usize, lane: usize, see: &mut dyn FnMut(Site, LossKind)) {
         let n = self.operators.nodes();
         let stride = state.components * n;
         let u = &state.u[block * stride..(block + 1) * stride];

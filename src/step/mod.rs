@@ -35,6 +35,7 @@ mod motion;
 mod outside;
 pub mod phase;
 mod predictor;
+mod rescue;
 mod runge_kutta;
 mod schedule;
 mod scheme;
@@ -51,7 +52,7 @@ mod worst;
 pub use crate::operators::curl_free::Relax;
 pub use balance::Balance;
 pub use boundary_memory::PointWithMemory;
-pub use correction::{Corrected, Correction, Made};
+pub use correction::{Corrected, Correction, Counts, Made, Notes};
 pub use curl::Control;
 pub use energy::{EnergyMade, Totals};
 pub use flux_of_blocks::Flux;
@@ -60,6 +61,7 @@ pub use law::Law;
 pub use loss::{Loss, LossKind, Site};
 pub use motion::Motion;
 pub use phase::{Phase, Phases};
+pub use rescue::Rescue;
 pub use runge_kutta::Tableau;
 pub use scheme::{Method, Scheme};
 pub use survey::{Speeds, Survey};
@@ -85,7 +87,7 @@ pub struct Work {
     outside: outside::Outside,
     /// The balance of the step, by block; none where nobody asks for it.
     balance: Option<Vec<balance::BlockBalance>>,
-    /// The memory of the corrections; none where there are none.
+    /// The memory of corrections and rescue; none where there are none.
     corrections: Option<Box<correction::Memory>>,
     /// One a thread.
     scratch: Vec<Mutex<Scratch>>,
@@ -203,7 +205,7 @@ impl Scheme {
         }
         work.next.time = time;
         work.next.step = state.step + 1;
-        if !self.corrections.is_empty() {
+        if work.corrections.is_some() {
             let start = ticks();
             self.correct(state, dt, work);
             let scratch = work.scratch[0].get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());

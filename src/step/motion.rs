@@ -66,8 +66,7 @@ impl Motion {
     /// # Errors
     /// As [`Motion::advance`].
     pub fn advance_to(&mut self, scheme: &Scheme, dt: f64, time: f64) -> Result<(), Loss> {
-        scheme.step_to(&self.state, &self.survey, dt, time, &mut self.work);
-        scheme.surveyed(&mut self.work, &mut self.other)?;
+        self.make(scheme, dt, time)?;
         std::mem::swap(&mut self.state, &mut self.work.next);
         std::mem::swap(&mut self.survey, &mut self.other);
         Ok(())
@@ -78,8 +77,17 @@ impl Motion {
     /// # Errors
     /// As [`Motion::advance`].
     pub fn attempt(&mut self, scheme: &Scheme, dt: f64) -> Result<(), Loss> {
-        scheme.step(&self.state, dt, &self.survey, &mut self.work);
-        scheme.surveyed(&mut self.work, &mut self.other)
+        self.make(scheme, dt, self.state.time + dt)
+    }
+
+    /// Makes the state after a step, with cells rescued where the scheme says so.
+    fn make(&mut self, scheme: &Scheme, dt: f64, time: f64) -> Result<(), Loss> {
+        let Self { state, survey, work, other } = self;
+        if let Some(rescue) = scheme.rescue {
+            return scheme.step_with(rescue, (state, survey), (dt, time), work, other);
+        }
+        scheme.step_to(state, survey, dt, time, work);
+        scheme.surveyed(work, other)
     }
 
     /// The state before the last step, whose memory the next step writes over, and its survey.

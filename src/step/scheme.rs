@@ -1,7 +1,7 @@
 //! What stays the same from step to step.
 
 use super::boundary_memory::BoundaryMemory;
-use super::{Control, Correction, Flux, Histories, Law, Sweeps, Tableau};
+use super::{Control, Correction, Flux, Histories, Law, Rescue, Sweeps, Tableau};
 use crate::basis::TimeBasis;
 use crate::boundary::Boundary;
 use crate::error::{Error, Result};
@@ -55,6 +55,8 @@ pub struct Scheme {
     pub curl: Option<Control>,
     /// What changes the new state after each step, one after the other.
     pub corrections: Vec<Arc<dyn Correction>>,
+    /// Which cells are stepped again at order 0; none where it is off.
+    pub rescue: Option<Rescue>,
     /// The instruction set.
     pub kernel: Kernel,
 }
@@ -115,6 +117,7 @@ impl Scheme {
             sources,
             curl,
             corrections,
+            rescue: None,
             kernel,
         })
     }
@@ -131,6 +134,12 @@ impl Scheme {
         Self { corrections, ..self }
     }
 
+    /// With cells stepped again at order 0 where the step lost them.
+    #[must_use]
+    pub fn with_rescue(self, rescue: Option<Rescue>) -> Self {
+        Self { rescue, ..self }
+    }
+
     /// The same on another grid of the same body, with the conditions of its boundary groups.
     ///
     /// # Errors
@@ -139,7 +148,8 @@ impl Scheme {
         let (laws, method, flux) = (self.laws.clone(), self.method.clone(), self.flux.clone());
         let new = Self::new(operators, laws, method, flux, boundaries)?;
         let (sources, corrections) = (self.sources.clone(), self.corrections.clone());
-        let new = new.with_sources(sources).with_corrections(corrections).with_kernel(self.kernel);
+        let new =
+            new.with_sources(sources).with_corrections(corrections).with_rescue(self.rescue).with_kernel(self.kernel);
         match self.curl {
             Some(control) => new.with_curl(control),
             None => Ok(new),

@@ -1,0 +1,115 @@
+//! Slope limiters: step 3(c) of the paper's scheme, a non-oscillatory approximation at shocks.
+//!
+//! A [`Sensor`] marks the cells whose jumps are too large for a smooth solution; a [`CellLimiter`] cuts the modes of these cells back to
+//! what their neighbours allow. Other cells keep their bits. Internal variables stay at their points; they are found anew from F.
+//!
+//! For ADER a limiter acts after the corrector and the control of the curl, for Runge-Kutta after each stage. Rotations of a cell that
+//! it leaves behind are for the control of the curl of the next step.
+
+mod cell;
+mod modes;
+mod moment;
+mod neighbour;
+mod sensor;
+mod vertex;
+mod waves;
+
+pub use moment::MomentLimiter;
+pub use sensor::Sensor;
+pub use vertex::VertexLimiter;
+
+use crate::lane::{F8, LANES};
+use crate::operators::Operators;
+use crate::state::UNKNOWNS;
+use crate::step::{Corrected, Correction, Made, Notes, Scheme};
+use cell::Cell;
+use modes::{Legendre, Modes};
+
+/// Limits one cell.
+pub trait CellLimiter: Send + Sync + 'static {
+    /// The name, as printed.
+    fn name(&self) -> &'static str;
+
+    /// The modes of the cell after limiting; none where nothing has to be cut.
+    fn limit(&self, cell: &Cell) -> Option<Modes>;
+}
+
+/// A limiter of the cells that a sensor marks.
+pub struct Limiter<K> {
+    /// Which cells.
+    pub sensor: Sensor,
+    /// How.
+    pub kind: K,
+    legendre: Legendre,
+}
+
+impl<K: CellLimiter> Limiter<K> {
+    /// For degree N in space.
+    pub fn new(degree: usize, sensor: Sensor, kind: K) -> Self {
+        Self { sensor, kind, legendre: Legendre::new(degree) }
+    }
+
+    /// Limits a lane; whether it has changed.
+    fn limit(&self, made: &Made, block: &mut Corrected, lane: usize) -> bool {
+        let cell = Cell { made, legendre: &self.legendre, block: block.number, lane };
+        let Some(modes) = self.kind.limit(&cell) else { return false };
+        let (operators, n) = (&made.scheme.operators, self.legendre.nodes());
+        let weights = operators.node_weights(block.number, lane);
+        let area: f64 = weights[..n].iter().sum();
+        for (k, values) in block.u.chunks_exact_mut(n).enumerate().take(UNKNOWNS) {
+            let new = self.legendre.values(&modes.of[k]);
+            // Modes of the parent cell are not orthogonal with J: a constant brings the mean back.
+            let moved = values.iter().zip(&new).zip(&weights).map(|((old, new), weight)| weight * (old.0[lane] - new));
+            let shift = moved.sum::<f64>() / area;
+            values.iter_mut().zip(&new).for_each(|(value, new)| value.0[lane] = new + shift);
+        }
+        true
+    }
+}
+
+impl<K: CellLimiter> Correction for Limiter<K> {
+    fn name(&self) -> &str {
+        self.kind.name()
+    }
+
+    fn after_stages(&self) -> bool {
+        true
+    }
+
+    fn renews_internal(&self) -> bool {
+        true
+    }
+
+    fn numbers(&self, scheme: &Scheme) -> usize {
+        Sensor::numbers(&scheme.operators)
+    }
+
+    fn look(&self, made: &Made, notes: &mut Notes) {
+        self.sensor.mark(made, notes);
+    }
+
+    fn applies(&self, made: &Made, block: usize) -> bool {
+        made.notes.marked[block] != 0
+    }
+
+    fn correct(&self, made: &Made, block: &mut Corrected) {
+        let marked = made.notes.marked[block.number];
+        block.changed = 0;
+        for lane in (0..LANES).filter(|lane| marked >> lane & 1 == 1) {
+            block.changed |= u8::from(self.limit(made, block, lane)) << lane;
+        }
+    }
+}
+
+/// The cells of a block as bits, without padding.
+fn cells(operators: &Operators, block: usize) -> u8 {
+    (u16::from(u8::MAX) >> (LANES - operators.blocks.count[block])) as u8
+}
+
+/// A component of a cell at its nodes.
+fn lane_of(values: &[F8], lane: usize) -> impl Iterator<Item = f64> {
+    values.iter().map(move |value| value.0[lane])
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,86 @@
+//! The vertex-based limiter.
+
+use super::CellLimiter;
+use super::cell::Cell;
+use super::modes::Modes;
+use crate::state::UNKNOWNS;
+
+/// Kuzmin, J. Comput. Appl. Math. 233, 2010, component by component: the linear part of each derivative may not leave, at a corner of the
+/// cell, the range of the means of that derivative over the cells around the corner. Modes of order q = i + j are cut by
+/// alpha_q = max over the orders from q on, so that smooth extrema stay.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct VertexLimiter;
+
+/// A share of the modes that may change without being called a change.
+const ROUNDING: f64 = 1e-12;
+
+impl CellLimiter for VertexLimiter {
+    fn name(&self) -> &'static str {
+        "vertex limiter"
+    }
+
+    fn limit(&self, cell: &Cell) -> Option<Modes> {
+        let own = cell.modes();
+        let top = 2 * (own.m - 1);
+        let mut alpha = [[1.0f64; UNKNOWNS]; MOST_ORDERS];
+        for ends in [[0, 0], [0, 1], [1, 0], [1, 1]] {
+            narrow(cell, &own, ends, &mut alpha);
+        }
+        for order in (1..top).rev() {
+            for k in 0..UNKNOWNS {
+                alpha[order][k] = alpha[order][k].max(alpha[order + 1][k]);
+            }
+        }
+        let (mut out, mut changed) = (own.clone(), false);
+        for i in 0..own.m {
+            for j in (0..own.m).filter(|j| i + j > 0) {
+                let mut mode = own.mode(i * own.m + j);
+                for (value, alpha) in mode.iter_mut().zip(alpha[i + j]) {
+                    changed |= alpha < 1.0 - ROUNDING && *value != 0.0;
+                    *value *= alpha;
+                }
+                out.set(i * own.m + j, mode);
+            }
+        }
+        changed.then_some(out)
+    }
+}
+
+/// Orders i + j of modes, 0 to 12.
+const MOST_ORDERS: usize = 13;
+
+/// c_i times this is h^i d^i u/dx^i, but for terms of higher order: the product of 2 sqrt(4 k^2 - 1), k = 1..i.
+fn derivative(order: usize) -> f64 {
+    (1..=order).map(|k| 2.0 * ((4 * k * k - 1) as f64).sqrt()).product()
+}
+
+/// Lowers alpha of each order to what the derivatives around a corner allow.
+fn narrow(cell: &Cell, own: &Modes, ends: [usize; 2], alpha: &mut [[f64; UNKNOWNS]; MOST_ORDERS]) {
+    let m = own.m;
+    let (mut low, mut high) = (own.clone(), own.clone());
+    cell.around(ends, &mut |modes| {
+        for k in 0..UNKNOWNS {
+            for (number, value) in modes.of[k][..m * m].iter().enumerate() {
+                low.of[k][number] = low.of[k][number].min(*value);
+                high.of[k][number] = high.of[k][number].max(*value);
+            }
+        }
+    });
+    for i in 0..m {
+        for j in 0..m {
+            let number = i * m + j;
+            let scale = |i: usize, j: usize| derivative(i) * derivative(j);
+            for k in 0..UNKNOWNS {
+                let values = &own.of[k];
+                let one = if i + 1 < m { values[number + m] * scale(i + 1, j) * (ends[0] as f64 - 0.5) } else { 0.0 };
+                let two = if j + 1 < m { values[number + 1] * scale(i, j + 1) * (ends[1] as f64 - 0.5) } else { 0.0 };
+                let rise = one + two;
+                let far = if rise > 0.0 { high.of[k][number] } else { low.of[k][number] };
+                if rise != 0.0 {
+                    let room = (far - values[number]) * scale(i, j) / rise;
+                    alpha[i + j + 1][k] = alpha[i + j + 1][k].min(room.clamp(0.0, 1.0));
+                }
+            }
+        }
+    }
+}
