@@ -35,6 +35,7 @@ mod motion;
 mod outside;
 pub mod phase;
 mod predictor;
+mod rotation;
 mod runge_kutta;
 mod schedule;
 mod scheme;
