@@ -28,7 +28,9 @@ pub use dual::Dual;
 pub use portable::Portable;
 pub use twin::{Twin, apart, twins};
 
+use std::mem::ManuallyDrop;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::atomic::{AtomicU8, Ordering};
 
 /// Number of cells in a block, one a lane.
 pub const LANES: usize = 8;
@@ -265,6 +267,18 @@ pub trait Work {
     fn run<L: Lanes>(self) -> Self::Out;
 }
 
+/// A piece of work where its caller has it. Handed on by value, it would be copied once more at each entry of a kernel.
+struct InPlace<'a, W>(&'a mut ManuallyDrop<W>);
+
+impl<W> InPlace<'_, W> {
+    /// The work; once, for `self` is gone then.
+    #[inline(always)]
+    fn take(self) -> W {
+        // SAFETY: made by `Kernel::run` alone, once, of a value that nothing else looks at.
+        unsafe { ManuallyDrop::take(self.0) }
+    }
+}
+
 /// The instruction set that the kernels use. Paths differ in the last digits (fused multiplication); a named
 /// path repeats a run bit for bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -279,6 +293,10 @@ pub enum Kernel {
     Counting,
 }
 
+/// Kernels that the processor was found to have, a bit each: one test at each entry, of which a step has about ten a block. (The
+/// standard library tests each feature.)
+static FOUND: AtomicU8 = AtomicU8::new(0);
+
 impl Kernel {
     /// The paths that a user may name, the widest first.
     pub const NAMES: &'static [(&'static str, Kernel)] =
@@ -292,7 +310,13 @@ impl Kernel {
     /// Whether this processor has it.
     #[inline]
     pub fn is_available(self) -> bool {
-        match self {
+        FOUND.load(Ordering::Relaxed) >> self as u8 & 1 == 1 || self.look()
+    }
+
+    /// Asks the processor.
+    #[cold]
+    fn look(self) -> bool {
+        let found = match self {
             #[cfg(target_arch = "x86_64")]
             Kernel::Avx512 => is_x86_feature_detected!("avx512f"),
             #[cfg(target_arch = "x86_64")]
@@ -300,7 +324,9 @@ impl Kernel {
             #[cfg(not(target_arch = "x86_64"))]
             Kernel::Avx512 | Kernel::Avx2 => false,
             Kernel::Portable | Kernel::Counting => true,
-        }
+        };
+        FOUND.fetch_or(u8::from(found) << self as u8, Ordering::Relaxed);
+        found
     }
 
     /// The widest that this processor has.
@@ -312,6 +338,7 @@ impl Kernel {
     /// Does the work on this path (on the portable one where the processor lacks it).
     #[inline]
     pub fn run<W: Work>(self, work: W) -> W::Out {
+        let work = InPlace(&mut ManuallyDrop::new(work));
         match self {
             // SAFETY: the processor has the features.
             #[cfg(target_arch = "x86_64")]
@@ -328,13 +355,13 @@ impl Kernel {
 // Functions of their own, as `enter_avx2` is: each is compiled once, not once for every caller.
 
 #[inline(never)]
-fn enter_portable<W: Work>(work: W) -> W::Out {
-    work.run::<Portable>()
+fn enter_portable<W: Work>(work: InPlace<W>) -> W::Out {
+    work.take().run::<Portable>()
 }
 
 #[inline(never)]
-fn enter_counted<W: Work>(work: W) -> W::Out {
-    work.run::<counted::Counted>()
+fn enter_counted<W: Work>(work: InPlace<W>) -> W::Out {
+    work.take().run::<counted::Counted>()
 }
 
 #[cfg(test)]
