@@ -17,6 +17,7 @@ pub mod counted;
 mod dual;
 pub mod functions;
 mod portable;
+mod single;
 mod twin;
 
 #[cfg(target_arch = "x86_64")]
@@ -27,7 +28,9 @@ pub use dual::Dual;
 pub use portable::Portable;
 pub use twin::{Twin, apart, twins};
 
+use std::mem::ManuallyDrop;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::atomic::{AtomicU8, Ordering};
 
 /// Number of cells in a block, one a lane.
 pub const LANES: usize = 8;
@@ -256,67 +259,24 @@ impl Coefficient for F8 {
     }
 }
 
-/// Bits of x^(-1/3): MAGIC - bits / 3, with the magic number of the smallest largest error. A third of the upper 32 bits
-/// is enough for a guess, and is one 32-bit product in a vector register.
-const CUBE_ROOT_MAGIC: u64 = 0x553e_f0ff_289d_d796;
-
-/// Bits of sqrt(1/2), rounded down: where the mantissa of [`Lane::split`] begins. Bits minus these, plus 1024 in the
-/// exponent so that they stay positive, have k + 1024 above the fraction.
-const HALF_ROOT: u64 = 0x3fe6_a09e_667f_3bcc;
-const SPLIT_OFFSET: u64 = (1024 << 52) - HALF_ROOT;
-/// 2^52 and its bits: a whole number k in the fraction is 2^52 + k.
-const TWO_52: f64 = 4_503_599_627_370_496.0;
-/// Added to k, it leaves k + 1023 in the lowest bits: 1.5 2^52 + 1023.
-const POWER_MAGIC: f64 = 6_755_399_441_055_744.0 + 1023.0;
-
-impl Lane for f64 {
-    #[inline(always)]
-    fn splat(x: f64) -> f64 {
-        x
-    }
-    // Never f64::mul_add: without the feature it calls libm, 25 times slower.
-    #[inline(always)]
-    fn mul_add(self, b: f64, c: f64) -> f64 {
-        self * b + c
-    }
-    #[inline(always)]
-    fn sqrt(self) -> f64 {
-        f64::sqrt(self)
-    }
-    #[inline(always)]
-    fn min(self, other: f64) -> f64 {
-        if self < other { self } else { other }
-    }
-    #[inline(always)]
-    fn max(self, other: f64) -> f64 {
-        if self > other { self } else { other }
-    }
-    #[inline(always)]
-    fn inverse_cube_root_guess(self) -> f64 {
-        f64::from_bits(CUBE_ROOT_MAGIC.wrapping_sub(((self.to_bits() >> 32) / 3) << 32))
-    }
-    #[inline(always)]
-    fn split(self) -> (f64, f64) {
-        let power = self.to_bits().wrapping_add(SPLIT_OFFSET) >> 52;
-        let mantissa = self.to_bits().wrapping_sub(power.wrapping_sub(1024) << 52);
-        (f64::from_bits(mantissa), f64::from_bits(power | TWO_52.to_bits()) - (TWO_52 + 1024.0))
-    }
-    #[inline(always)]
-    fn power_of_two(self) -> f64 {
-        f64::from_bits((self + POWER_MAGIC).to_bits() << 52)
-    }
-    #[inline(always)]
-    fn where_positive(self, yes: f64, no: f64) -> f64 {
-        if self > 0.0 { yes } else { no }
-    }
-}
-
 /// A piece of work that is written once for all lane types. Implementations mark `run` `#[inline(always)]`.
 pub trait Work {
     /// What it returns.
     type Out;
     /// Does the work on lanes of type L.
     fn run<L: Lanes>(self) -> Self::Out;
+}
+
+/// A piece of work where its caller has it. Handed on by value, it would be copied once more at each entry of a kernel.
+struct InPlace<'a, W>(&'a mut ManuallyDrop<W>);
+
+impl<W> InPlace<'_, W> {
+    /// The work; once, for `self` is gone then.
+    #[inline(always)]
+    fn take(self) -> W {
+        // SAFETY: made by `Kernel::run` alone, once, of a value that nothing else looks at.
+        unsafe { ManuallyDrop::take(self.0) }
+    }
 }
 
 /// The instruction set that the kernels use. Paths differ in the last digits (fused multiplication); a named
@@ -333,6 +293,10 @@ pub enum Kernel {
     Counting,
 }
 
+/// Kernels that the processor was found to have, a bit each: one test at each entry, of which a step has about ten a block. (The
+/// standard library tests each feature.)
+static FOUND: AtomicU8 = AtomicU8::new(0);
+
 impl Kernel {
     /// The paths that a user may name, the widest first.
     pub const NAMES: &'static [(&'static str, Kernel)] =
@@ -346,7 +310,13 @@ impl Kernel {
     /// Whether this processor has it.
     #[inline]
     pub fn is_available(self) -> bool {
-        match self {
+        FOUND.load(Ordering::Relaxed) >> self as u8 & 1 == 1 || self.look()
+    }
+
+    /// Asks the processor.
+    #[cold]
+    fn look(self) -> bool {
+        let found = match self {
             #[cfg(target_arch = "x86_64")]
             Kernel::Avx512 => is_x86_feature_detected!("avx512f"),
             #[cfg(target_arch = "x86_64")]
@@ -354,7 +324,9 @@ impl Kernel {
             #[cfg(not(target_arch = "x86_64"))]
             Kernel::Avx512 | Kernel::Avx2 => false,
             Kernel::Portable | Kernel::Counting => true,
-        }
+        };
+        FOUND.fetch_or(u8::from(found) << self as u8, Ordering::Relaxed);
+        found
     }
 
     /// The widest that this processor has.
@@ -366,6 +338,7 @@ impl Kernel {
     /// Does the work on this path (on the portable one where the processor lacks it).
     #[inline]
     pub fn run<W: Work>(self, work: W) -> W::Out {
+        let work = InPlace(&mut ManuallyDrop::new(work));
         match self {
             // SAFETY: the processor has the features.
             #[cfg(target_arch = "x86_64")]
@@ -382,121 +355,14 @@ impl Kernel {
 // Functions of their own, as `enter_avx2` is: each is compiled once, not once for every caller.
 
 #[inline(never)]
-fn enter_portable<W: Work>(work: W) -> W::Out {
-    work.run::<Portable>()
+fn enter_portable<W: Work>(work: InPlace<W>) -> W::Out {
+    work.take().run::<Portable>()
 }
 
 #[inline(never)]
-fn enter_counted<W: Work>(work: W) -> W::Out {
-    work.run::<counted::Counted>()
+fn enter_counted<W: Work>(work: InPlace<W>) -> W::Out {
+    work.take().run::<counted::Counted>()
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    #[test]
-    fn inverse_cube_root_is_exact_to_rounding_on_its_whole_range() {
-        for i in 0..200_000 {
-            let x = 10f64.powf(-6.0 + 12.0 * i as f64 / 2e5);
-            let relative = (x.inverse_cube_root() * x.cbrt() - 1.0).abs();
-            // 3 ulp: two roundings in the last step, one in the product formed here.
-            assert!(relative < 7e-16, "x = {x}: {relative:e}");
-        }
-    }
-
-    /// Three numbers from both runs.
-    struct Join<'a>(&'a [F8], usize);
-    impl Work for Join<'_> {
-        type Out = [F8; 3];
-        #[inline(always)]
-        fn run<L: Lanes>(self) -> [F8; 3] {
-            let mut out = [F8::ZERO; 3];
-            store_array(L::load_joined::<3>(&self.0[4..], self.0, 1, self.1), &mut out);
-            out
-        }
-    }
-
-    #[test]
-    fn joined_numbers_are_the_end_of_one_and_the_start_of_the_other_on_every_path() {
-        let all: Vec<F8> = (0..9).map(|k| F8(std::array::from_fn(|lane| (8 * k + lane) as f64))).collect();
-        for r in 1..8 {
-            for kernel in paths() {
-                for (k, out) in kernel.run(Join(&all, r)).iter().enumerate() {
-                    let both: Vec<f64> = all[5 + k].0.iter().chain(&all[1 + k].0).copied().collect();
-                    assert_eq!(out.0, both[r..r + 8], "{kernel:?} {k} {r}");
-                }
-            }
-        }
-    }
-
-    /// Lanes of two numbers, picked and read one by one.
-    struct Pick<'a>(&'a [F8], [u8; LANES], u8);
-    impl Work for Pick<'_> {
-        type Out = [F8; 2];
-        #[inline(always)]
-        fn run<L: Lanes>(self) -> [F8; 2] {
-            let Self(all, from, lanes) = self;
-            let (mut out, mut faces, mut first) = ([F8::ZERO; 2], [&all[2..3]; LANES], [0; LANES]);
-            for lane in 0..LANES {
-                first[lane] = usize::from(from[lane]);
-                if lanes >> lane & 1 == 1 {
-                    faces[lane] = &all[1..2];
-                }
-            }
-            L::zero().pick(&all[2], &from, !lanes).pick(&all[1], &from, lanes).store(&mut out[0]);
-            store_array(load_lanes::<L, 1>(&faces, &first), &mut out[1..]);
-            out
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn picked_lanes_are_those_read_one_by_one_on_every_path(from in prop::array::uniform8(0u8..8), lanes: u8) {
-            let all: Vec<F8> = (0..3).map(|k| F8(std::array::from_fn(|lane| (8 * k + lane) as f64))).collect();
-            for kernel in paths() {
-                let expected = F8(std::array::from_fn(|lane| {
-                    all[if lanes >> lane & 1 == 1 { 1 } else { 2 }].0[usize::from(from[lane])]
-                }));
-                prop_assert_eq!(kernel.run(Pick(&all, from, lanes)), [expected; 2]);
-            }
-        }
-    }
-
-    /// All that this processor has.
-    fn paths() -> impl Iterator<Item = Kernel> {
-        Kernel::NAMES.iter().map(|(_, kernel)| *kernel).filter(|kernel| kernel.is_available())
-    }
-
-    struct EveryOperation(F8, F8);
-    impl Work for EveryOperation {
-        type Out = [F8; 6];
-        #[inline(always)]
-        fn run<L: Lanes>(self) -> [F8; 6] {
-            let (a, b) = (L::load(&self.0), L::load(&self.1));
-            let results =
-                [a + b * a - b, a / b, a.mul_add(b, -a), a.sqrt(), a.min(b), a.max(b) + a.inverse_cube_root()];
-            results.map(|x| {
-                let mut out = F8::ZERO;
-                x.store(&mut out);
-                out
-            })
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn all_paths_agree_to_the_rounding_of_one_fused_multiplication(
-            a in prop::array::uniform8(1e-3..1e3f64), b in prop::array::uniform8(1e-3..1e3f64)) {
-            let portable = Kernel::Portable.run(EveryOperation(F8(a), F8(b)));
-            for kernel in paths() {
-                let other = kernel.run(EveryOperation(F8(a), F8(b)));
-                for (p, w) in as_f64(&portable).iter().zip(as_f64(&other)) {
-                    // Products reach 1e6 and may cancel: four roundings of 1e6 * 2^-52 = 2.3e-10.
-                    prop_assert!((p - w).abs() <= 4.0 * 2.3e-10);
-                }
-            }
-        }
-    }
-}
+mod tests;

@@ -1,6 +1,7 @@
 //! Eight lanes in two registers of AVX2, with fused multiplication.
 
-use super::{CUBE_ROOT_MAGIC, F8, LANES, Lane, Lanes, POWER_MAGIC, SPLIT_OFFSET, TWO_52, Work, as_f64, assert_within};
+use super::single::{CUBE_ROOT_MAGIC, POWER_MAGIC, SPLIT_OFFSET, TWO_52};
+use super::{F8, InPlace, LANES, Lane, Lanes, Work, as_f64, assert_within};
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -169,6 +170,6 @@ impl Lanes for Avx2 {
 static SECOND: [f64; 16] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0];
 
 #[target_feature(enable = "avx2,fma")]
-pub(super) fn enter_avx2<W: Work>(work: W) -> W::Out {
-    work.run::<Avx2>()
+pub(super) fn enter_avx2<W: Work>(work: InPlace<W>) -> W::Out {
+    work.take().run::<Avx2>()
 }

@@ -1,6 +1,7 @@
 //! Eight lanes in one register of AVX-512.
 
-use super::{CUBE_ROOT_MAGIC, F8, LANES, Lane, Lanes, POWER_MAGIC, SPLIT_OFFSET, TWO_52, Work, as_f64, assert_within};
+use super::single::{CUBE_ROOT_MAGIC, POWER_MAGIC, SPLIT_OFFSET, TWO_52};
+use super::{F8, InPlace, LANES, Lane, Lanes, Work, as_f64, assert_within};
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -150,6 +151,6 @@ impl Lanes for Avx512 {
 }
 
 #[target_feature(enable = "avx512f")]
-pub(super) fn enter_avx512<W: Work>(work: W) -> W::Out {
-    work.run::<Avx512>()
+pub(super) fn enter_avx512<W: Work>(work: InPlace<W>) -> W::Out {
+    work.take().run::<Avx512>()
 }

@@ -7,6 +7,7 @@ use super::block_energy::BlockEnergy;
 use super::lift::Lift;
 use super::outside::ExternalWork;
 use super::phase::Clock;
+use super::rotation::Rotation;
 use super::sources::SourceEnd;
 use super::sums::Terms;
 use super::survey::{Examine, History};
@@ -191,7 +192,7 @@ impl<const M: usize> Work for Project<'_, '_, M> {
                     curl::relaxation(turn * factor),
                     curl::relaxation((L::splat(curl::DEVIATOR) * prestress).min(c) * factor),
                 ];
-                let rotation = curl::Rotation {
+                let rotation = Rotation {
                     curl_free,
                     block: block.number,
                     law,

@@ -3,7 +3,7 @@
 use super::begin::Predict;
 use super::block_energy::StoredEnergy;
 use super::block_work::WithLaw;
-use super::curl::Power;
+use super::rotation::Power;
 use super::stage::AtNodes;
 use super::survey::Examine;
 use super::volume::Speeds;

@@ -36,6 +36,7 @@ mod outside;
 pub mod phase;
 mod predictor;
 mod rescue;
+mod rotation;
 mod runge_kutta;
 mod schedule;
 mod scheme;

@@ -3,7 +3,7 @@
 use super::runge_kutta::MOST_STAGES;
 use crate::lane::{F8, Lanes};
 
-/// The terms factor_j k_j of a block.
+/// The terms factor_j k_j of a block. Its functions are inlined: a call would hand back a copy of the whole list.
 #[derive(Clone, Copy)]
 pub struct Terms<'a> {
     list: [(f64, &'a [F8]); MOST_STAGES],
@@ -12,6 +12,7 @@ pub struct Terms<'a> {
 
 impl<'a> Terms<'a> {
     /// Of those `factors` that are not zero, `rates` being those of the block, [stage][`stride` numbers], cut to `len`.
+    #[inline(always)]
     pub fn new(factors: impl Iterator<Item = f64>, rates: &'a [F8], stride: usize, len: usize) -> Self {
         let mut terms = Self { list: [(0.0, &[]); MOST_STAGES], count: 0 };
         for (stage, factor) in factors.enumerate().filter(|(_, factor)| *factor != 0.0).take(MOST_STAGES) {
@@ -22,6 +23,7 @@ impl<'a> Terms<'a> {
     }
 
     /// With one more.
+    #[inline(always)]
     pub fn and(mut self, factor: f64, rate: &'a [F8]) -> Self {
         if factor != 0.0 && self.count < MOST_STAGES {
             self.list[self.count] = (factor, rate);
@@ -31,6 +33,7 @@ impl<'a> Terms<'a> {
     }
 
     /// No term or the only one; none where there are more.
+    #[inline]
     #[allow(clippy::option_option)]
     pub fn few(&self) -> Option<Option<(f64, &'a [F8])>> {
         match self.count {
