@@ -17,6 +17,8 @@ mod reference;
 pub mod regrid;
 mod sets;
 mod tables;
+mod times;
+mod warnings;
 
 use std::path::{Path, PathBuf};
 
@@ -243,11 +245,14 @@ impl Scene {
     pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Self> {
         let original = document(text, path)?;
         let mut origin =
-            Origin { path: path.to_owned(), text: text.to_owned(), run: text.to_owned(), sets: Vec::new() };
+            Origin { path: path.to_owned(), text: text.to_owned(), run: text.to_owned(), ..Origin::default() };
         if !sets.is_empty() {
             let mut changed: DocumentMut = original.into_mut();
             for argument in sets {
-                origin.sets.push((sets::apply(&mut changed, argument)?, argument.clone()));
+                let (path, removed) = sets::apply(&mut changed, argument, &origin.sets)?;
+                origin.sets.push((path, argument.clone()));
+                let words = |key: String| format!("--set {argument}: takes the place of `{key}` in the scene file");
+                origin.replaced.extend(removed.into_iter().map(words));
             }
             origin.run = changed.to_string();
         }
