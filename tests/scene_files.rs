@@ -189,6 +189,35 @@ const BAD: &[Row] = &[
         13,
         &["0 s lies before the start of the run, 1e-4 s", "[time] start"],
     ),
+    (
+        "\"-200\", \"0\"]",
+        "\"-200\", \"0\"]\nfrom = \"cloud\"",
+        13,
+        12,
+        &["[initial] has both `from` and `velocity`", "keep one"],
+    ),
+    (
+        "[time]",
+        "[watch]\nenergy = \"of\"\n[time]",
+        37,
+        10,
+        &["`energy` is the text \"of\"", "greater than 0, or \"off\""],
+    ),
+    ("[time]", "[watch]\nenergy = 0\n[time]", 37, 10, &["`energy` is 0", "greater than 0, or \"off\""]),
+    (
+        "degree = 2",
+        "degree = 1.0",
+        34,
+        10,
+        &["`degree` is 1.0, which has a decimal point", "without a point, such as 1"],
+    ),
+    (
+        "[curl]",
+        "[exact]\nkind = \"plastic-impact\"\n[curl]",
+        31,
+        8,
+        &["unknown `kind` \"plastic-impact\"", "`plastic-impact` is called `j2-impact` now"],
+    ),
     // groups of the rectangle
     (
         "group = \"top\"",

@@ -2,7 +2,6 @@
 //! other units.
 
 use super::{Cost, Problem};
-use crate::boundary::Data;
 use crate::mesh::parts::{EdgeCount, Part, parts};
 use crate::mesh::{BoundaryEdge, Link, Mesh};
 use crate::operators::{Blocks, Neighbour};
@@ -157,14 +156,17 @@ fn fast_boundary(scene: &Scene, mesh: &Mesh, scheme: &Scheme) -> Vec<String> {
         let largest = |edge: &BoundaryEdge| {
             let [a, b] = mesh.face_nodes(edge.cell, edge.face).map(|node| mesh.nodes[node]);
             let x = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-            let at = |t: f64| components.iter().map(|data: &Data| data(x, t)).fold(0.0, f64::hypot);
+            let at = |t: f64| components.iter().map(|speed| speed.eval(x, t)).fold(0.0, f64::hypot);
             times.map(at).into_iter().fold(0.0, f64::max)
         };
         let edges = mesh.edges.iter().filter(|edge| mesh.edge_groups[edge.group] == name);
         let v = edges.map(largest).fold(0.0, f64::max);
         if v > c {
+            let sources: Vec<String> = components.iter().map(|speed| format!("`{}`", speed.source())).collect();
             all.push(format!(
-                "the speed of the boundary `{name}` is {v:.4e} m/s, above the wave speed {c:.4e} m/s; {SPEEDS}"
+                "the speed of the boundary `{name}` is {v:.4e} m/s, above the wave speed {c:.4e} m/s: its expression is {}; \
+                 {SPEEDS}",
+                sources.join(", ")
             ));
         }
     }

@@ -74,7 +74,10 @@ impl Scene {
     /// A cloud file that does not fit the mesh.
     pub fn given_points(&self, mesh: &Mesh) -> Result<Given> {
         match self.cloud_path() {
-            Some(path) => read_points(&path, mesh),
+            Some(_) => {
+                let path = Path::new(self.cloud.layout.values.text("path"));
+                read_points(&self.existing("cloud.path", path)?, mesh)
+            }
             None => Ok(Given { cloud: self.seeded(mesh), ..Given::default() }),
         }
     }

@@ -16,7 +16,7 @@ impl Scene {
     /// A value that is not finite, or J <= 0, with its place in the mesh.
     pub fn initial_state(&self, mesh: &Mesh, scheme: &Scheme) -> Result<State> {
         if let Some(path) = &self.initial.snapshot {
-            return self.state_of_snapshot(&self.resolve(path), scheme);
+            return self.state_of_snapshot(&self.existing("initial.snapshot", path)?, scheme);
         }
         if self.initial.from_cloud {
             return self.state_from_cloud(mesh, scheme);

@@ -294,6 +294,21 @@ impl Scene {
         self.origin.path.parent().map_or_else(|| path.to_owned(), |folder| folder.join(path))
     }
 
+    /// The file that a key names, which has to be there.
+    ///
+    /// # Errors
+    /// There is no such file.
+    pub fn existing(&self, key: &str, path: &Path) -> Result<PathBuf> {
+        let file = self.resolve(path);
+        match file.exists() {
+            true => Ok(file),
+            false => {
+                let what = format!("there is no file {}", file.display());
+                Err(self.error(key, what, "give the path of a file, relative to the scene file"))
+            }
+        }
+    }
+
     /// The mesh file, if the mesh is one.
     pub fn mesh_path(&self) -> Option<PathBuf> {
         match &self.mesh {
@@ -317,8 +332,8 @@ impl Scene {
             .map_err(|fault| self.error(&fault.key, fault.what, fault.remedy))
     }
 
-    /// Where the value of a key stands.
-    fn place(&self, key: &str) -> Place {
+    /// Where the value of a key such as `scheme.cfl` or `boundary.0.group` stands.
+    pub(crate) fn place(&self, key: &str) -> Place {
         let path: Vec<String> = key.split('.').map(str::to_owned).collect();
         self.origin.place(&path, Part::Value)
     }
