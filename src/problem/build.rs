@@ -25,6 +25,7 @@ impl Scene {
     pub fn build_mesh(&self) -> Result<Mesh> {
         let mesh = match &self.mesh {
             Source::Rectangle { size, cells } => {
+                self.check_room("mesh.rectangle.cells", cells[0].saturating_mul(cells[1]))?;
                 let place = || self.place("mesh.rectangle.cells");
                 mesh::rectangle(*size, *cells).map_err(|why| Error::from(why).or_at(place()))?
             }

@@ -309,6 +309,11 @@ impl Scene {
         }
     }
 
+    /// Whether the scene gives a key such as `scheme.cfl`.
+    pub fn gives(&self, key: &str) -> bool {
+        self.origin.given().has(key)
+    }
+
     /// The mesh file, if the mesh is one.
     pub fn mesh_path(&self) -> Option<PathBuf> {
         match &self.mesh {

@@ -37,8 +37,8 @@ fn bad_scenes_are_named_by_file_line_and_column() {
             "29:8: there is no file none.msh",
             "relative",
         ),
-        // More cells than numbers of cells.
-        ("cells = [4, 2]", "cells = [70000, 70000]", "3:42: ", "cells"),
+        // More cells than any memory holds.
+        ("cells = [4, 2]", "cells = [100000, 100000]", "3:46: 10000000000 cells of degree 1 need about", "fewer cells"),
     ];
     for (old, new, begins, remedy) in table {
         assert!(SCENE.contains(old), "{old}");
@@ -47,6 +47,8 @@ fn bad_scenes_are_named_by_file_line_and_column() {
         assert!(message.starts_with(&format!("error: case.toml:{begins}")), "{new}: {message}");
         assert!(message.contains(remedy), "{new}: {message}");
         assert!(!bench.path("runs/case/summary.json").exists());
+        // What is wrong is found before matrices are built and written.
+        assert!(!bench.path("runs/case/operators.h5").exists(), "{new}");
     }
 }
 
@@ -80,6 +82,8 @@ fn faults_that_show_in_mid_run_are_named_by_their_key() {
     let message = bench.fail(2, "run case.toml --force");
     assert!(message.starts_with("error: case.toml:29:13: regrid at step "), "{message}");
     assert!(message.contains("not a grid of the same body") && message.contains("cover 0.000e0 m^2"), "{message}");
+    let message = bench.fail(2, "run case.toml --force --set regrid.0.rectangle.cells=[100000,100000]");
+    assert!(message.contains("regrid at step ") && message.contains("10000000000 cells of degree 1 need"), "{message}");
 }
 
 #[test]
