@@ -181,7 +181,6 @@ const BAD: &[Row] = &[
         &["`every` is 1e-300 s, which is more than 1e9 times", "every_steps = 1"],
     ),
     ("\"paper\"", "\"rotated\"\nspacing = 0.1\nper_direction = 3", 7, 17, &["the `spacing` 0.1 m already", "remove"]),
-    ("\"paper\"", "\"paper\"\nhistories = \"points\"", 6, 13, &["no law of the scene has internal variables"]),
     (
         "[time]\nend = 1e-3",
         "[time]\nstart = 1e-4\nend = 1e-3\n[[regrid]]\nrefine = 2\nat = [2e-4, 0.0]",
@@ -295,6 +294,7 @@ fn keys_without_effect_are_warnings_since_set_changes_the_method() {
         ("", &[rk, "cloud.layout=jitter"], "--set cloud.layout=jitter: `layout`", "only for exports"),
         ("histories = \"points\"", &[rk, j2], "case.toml:6:13: `histories`", "rk-dgfem keeps internal variables"),
         ("histories = \"points\"", &[j2, "cloud.layout=gauss"], "case.toml:6:13: `histories`", "are the Gauss nodes"),
+        ("histories = \"points\"", &[], "case.toml:6:13: `histories`", "no law of the scene has internal variables"),
         ("", &["material.0.layout=gauss"], "case.toml:5:10: `layout`", "each [[material]] that it may concern"),
         ("", &["scheme.degree=0", "scheme.time_degree=0"], "case.toml:31:1: `curl`", "degree 0 have no curl"),
         ("", &["regrid=[{at=[2e-3],refine=2}]"], "--set regrid=", "1 of 1 times lie after the end of the run"),

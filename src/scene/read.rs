@@ -42,11 +42,6 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         return Err(need("material", "add [[material]] with law, density and the law's parameters"));
     }
     let materials = materials(&mut material_tables, &general, degree)?;
-    if let Some(table) = cloud_table.filter(|table| table.has("histories"))
-        && materials.iter().all(|material| material.histories.is_none())
-    {
-        return Err(table.wrong("histories", "no law of the scene has internal variables", "remove this key"));
-    }
     let (start, end) = time(time_table.as_mut().ok_or_else(|| need("time", "add [time] with end, in s"))?)?;
     let scene = Scene {
         title: title.unwrap_or_else(|| origin.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),

@@ -83,6 +83,9 @@ impl Scene {
             });
         }
         self.of_points_without_effect(&given, &mut add);
+        if self.materials.iter().all(|material| material.histories.is_none()) {
+            add("cloud.histories", "no law of the scene has internal variables".to_owned());
+        }
         for key in ["layout", "per_direction", "histories"] {
             let needs = |k: &usize| key != "histories" || self.materials[*k].histories.is_some();
             if (0..self.materials.len()).filter(needs).all(|k| given.has(&format!("material.{k}.{key}"))) {
