@@ -95,7 +95,7 @@ impl Error {
 
     /// The same with another remedy, made from the present one; of bad input only.
     #[must_use]
-    pub fn with_remedy(self, change: impl FnOnce(String) -> String) -> Self {
+    pub(crate) fn with_remedy(self, change: impl FnOnce(String) -> String) -> Self {
         match self {
             Error::Input { what, place, remedy } => Error::Input { what, place, remedy: change(remedy) },
             other => other,
@@ -104,7 +104,7 @@ impl Error {
 
     /// Bad input that has no place gets this one.
     #[must_use]
-    pub fn or_at(self, at: Place) -> Self {
+    pub(crate) fn or_at(self, at: Place) -> Self {
         match self {
             Error::Input { what, place, remedy } if place == Place::default() => {
                 Error::Input { what, place: at, remedy }

@@ -298,7 +298,7 @@ impl Scene {
     ///
     /// # Errors
     /// There is no such file.
-    pub fn existing(&self, key: &str, path: &Path) -> Result<PathBuf> {
+    pub(crate) fn existing(&self, key: &str, path: &Path) -> Result<PathBuf> {
         let file = self.resolve(path);
         match file.exists() {
             true => Ok(file),
@@ -310,7 +310,7 @@ impl Scene {
     }
 
     /// Whether the scene gives a key such as `scheme.cfl`.
-    pub fn gives(&self, key: &str) -> bool {
+    pub(crate) fn gives(&self, key: &str) -> bool {
         self.origin.given().has(key)
     }
 
