@@ -5,7 +5,7 @@ use super::{Cost, Problem};
 use crate::mesh::parts::{EdgeCount, Part, parts};
 use crate::mesh::{BoundaryEdge, Link, Mesh};
 use crate::operators::{Blocks, Neighbour};
-use crate::scene::Scene;
+use crate::scene::{Scene, When};
 use crate::state::State;
 use crate::step::{Scheme, Survey, cfl};
 
@@ -37,6 +37,7 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     all.extend(fast_start(mesh, scheme, state, survey));
     all.extend(fast_boundary(scene, mesh, scheme));
     all.extend(thin(mesh, blocks, scene.scheme.degree));
+    all.extend(short(scene, *dt));
     let notice = scene.curl.build().notice;
     all.extend((!notice.is_empty()).then(|| notice.to_owned()));
     if *steps <= 1.0 {
@@ -114,6 +115,20 @@ fn thin(mesh: &Mesh, blocks: &Blocks, degree: usize) -> Option<String> {
         cells.len(),
         mesh.number(*first)
     ))
+}
+
+/// A word on each output and change of grid whose interval is below the first step, s.
+fn short(scene: &Scene, dt: f64) -> Vec<String> {
+    let outputs =
+        scene.outputs.iter().map(|output| (format!("output \"{}\"", output.name), &output.when, output.exact_times));
+    let regrids = scene.regrids.iter().map(|regrid| ("[[regrid]]".to_owned(), &regrid.when, regrid.exact_times));
+    let text = |(of, when, exact): (String, &When, bool)| match when {
+        When::Every(interval) if *interval < dt && !exact => Some(format!(
+            "`every` of {of} is {interval:e} s, shorter than a step of {dt:.3e} s: it is due at each step"
+        )),
+        _ => None,
+    };
+    outputs.chain(regrids).filter_map(text).collect()
 }
 
 fn large(mesh: &Mesh) -> Option<String> {

@@ -38,7 +38,7 @@ fn bad_scenes_are_named_by_file_line_and_column() {
             "relative",
         ),
         // More cells than any memory holds.
-        ("cells = [4, 2]", "cells = [100000, 100000]", "3:46: 10000000000 cells of degree 1 need about", "fewer cells"),
+        ("cells = [4, 2]", "cells = [100000, 100000]", "3:42: 10000000000 cells of degree 1 need about", "fewer cells"),
     ];
     for (old, new, begins, remedy) in table {
         assert!(SCENE.contains(old), "{old}");
