@@ -19,7 +19,7 @@ impl Cost {
             rows.push(row("point matrices", classes(&points.pool)));
         }
         if let Some(curl_free) = &operators.curl_free {
-            rows.push(row("curl-free projections", classes(&curl_free.pool)));
+            rows.push(row("matrices of the curl control", classes(&curl_free.pool)));
         }
         rows.push(row("memory", mebibytes(self.bytes)));
         let smallest = extreme(&self.certificates, |c| -c.h).1;

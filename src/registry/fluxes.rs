@@ -16,7 +16,7 @@ pub struct Flux {
 /// The flux of a scene that names none.
 pub const DEFAULT: &str = "dual";
 
-const WITH_MEMORY: &str = "makes energy where a law with memory flows";
+const WITH_MEMORY: &str = "makes energy where a law with internal variables flows";
 
 const OTHER: &str = "scheme.flux = \"rusanov\" damps all jumps of F, and holds some corners that are crushed";
 
