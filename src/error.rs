@@ -93,6 +93,26 @@ impl Error {
         Error::Input { what: what.into(), place, remedy: remedy.into() }
     }
 
+    /// The same with another remedy, made from the present one; of bad input only.
+    #[must_use]
+    pub(crate) fn with_remedy(self, change: impl FnOnce(String) -> String) -> Self {
+        match self {
+            Error::Input { what, place, remedy } => Error::Input { what, place, remedy: change(remedy) },
+            other => other,
+        }
+    }
+
+    /// Bad input that has no place gets this one.
+    #[must_use]
+    pub(crate) fn or_at(self, at: Place) -> Self {
+        match self {
+            Error::Input { what, place, remedy } if place == Place::default() => {
+                Error::Input { what, place: at, remedy }
+            }
+            other => other,
+        }
+    }
+
     /// Output that could not be written.
     pub fn output(path: &Path, why: impl fmt::Display) -> Self {
         Error::Output { path: path.display().to_string(), why: why.to_string() }

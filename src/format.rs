@@ -8,6 +8,11 @@ pub fn row(name: impl Into<String>, value: impl Into<String>) -> Row {
     (name.into(), value.into())
 }
 
+/// A number of things: `1 step`, `2 steps`.
+pub fn count(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
 /// Bytes as MiB.
 pub fn mebibytes(bytes: usize) -> String {
     format!("{:.1} MiB", bytes as f64 / (1024.0 * 1024.0))
@@ -25,4 +30,14 @@ pub fn seconds(s: f64) -> String {
 /// The same, with milliseconds below one second.
 pub fn short_seconds(s: f64) -> String {
     if s < 1.0 { format!("{:.1} ms", 1e3 * s) } else { seconds(s) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_thing_is_singular() {
+        assert_eq!([0, 1, 2].map(|n| count(n, "step")), ["0 steps", "1 step", "2 steps"]);
+    }
 }

@@ -40,6 +40,15 @@ macro_rules! names {
     };
 }
 
+/// Names that things had before, and what they are called now.
+const FORMER: &[(&str, &str)] = &[("plastic-impact", "j2-impact"), ("plastic_dissipation", "material_dissipation")];
+
+/// The present name of what was called `given` before, where it is known here.
+fn renamed<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
+    let (_, now) = FORMER.iter().find(|(former, _)| *former == given)?;
+    known.iter().copied().find(|name| name == now)
+}
+
 /// The name at an edit distance of at most a third of its length (and at least 1), if there is one.
 pub(crate) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
     let distance = |name: &&str| strsim::damerau_levenshtein(&given.to_lowercase(), name);
@@ -52,6 +61,9 @@ pub(crate) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
 
 /// "did you mean `name`? ", or nothing.
 pub(crate) fn did_you_mean(given: &str, known: &[&str]) -> String {
+    if let Some(now) = renamed(given, known) {
+        return format!("`{given}` is called `{now}` now; ");
+    }
     nearest(given, known).map(|name| format!("did you mean `{name}`? ")).unwrap_or_default()
 }
 
@@ -68,5 +80,14 @@ mod tests {
         assert_eq!(nearest("banana", &known), None);
         assert_eq!(nearest("z", &["x", "y", "sin"]), None);
         assert_eq!(nearest("a", &[]), None);
+    }
+
+    #[test]
+    fn former_names_are_answered_by_the_present_ones_where_these_are_known() {
+        let known = ["wall-impact", "j2-impact"];
+        assert_eq!(did_you_mean("plastic-impact", &known), "`plastic-impact` is called `j2-impact` now; ");
+        assert_eq!(did_you_mean("plastic-impact", &known[..1]), "");
+        let columns = ["total_energy", "material_dissipation"];
+        assert!(did_you_mean("plastic_dissipation", &columns).contains("material_dissipation"));
     }
 }

@@ -314,6 +314,10 @@ fn the_memory_of_a_condition_goes_through_snapshots_and_regrids() {
         let mut problem = Problem::new(&scene(method, RUBBER, sides, 0.15, &again)).unwrap();
         let gaps = problem.scheme.boundary_memory_of(&problem.state);
         assert!(gaps.iter().all(|gap| (gap - 0.05).abs() < 0.005), "{method}: {gaps:?}");
+        // Two walls with memory remember more than one: the snapshot is not that of such a run.
+        let other = scene(method, RUBBER, [wall, wall, SYMMETRY, SYMMETRY], 0.15, &again);
+        let why = Problem::new(&other).err().unwrap().to_string();
+        assert!(why.contains("the memory of other boundary conditions") && why.contains("[[boundary]]"), "{why}");
         problem.run().unwrap();
         assert!(problem.state.step == whole.state.step && problem.state.u == whole.state.u, "{method}");
         // On a finer grid from .05 s on the body meets the wall at the same time.

@@ -158,6 +158,65 @@ const BAD: &[Row] = &[
     ("[cloud]", "file = \"a.msh\"\n[cloud]", 3, 13, &["both `file` and `rectangle`"]),
     ("group = \"right\"", "group = \"left\"", 18, 9, &["two [[boundary]] on the group \"left\""]),
     ("kind = \"line\"\n", "kind = \"fields\"\n", 44, 1, &["unknown key `from`"]),
+    // keys that would have no effect
+    (
+        "every = 1e-4",
+        "every_steps = 3\nexact_times = true",
+        48,
+        15,
+        &["`exact_times` shortens steps", "give `at` or `every`"],
+    ),
+    (
+        "[[output]]\nkind = \"line\"",
+        "[[output]]\nkind = \"ledger\"\nexact_times = true\n[[output]]\nkind = \"line\"",
+        43,
+        15,
+        &["`exact_times` shortens steps", "of kind \"ledger\" gives none"],
+    ),
+    (
+        "every = 1e-4",
+        "every = 1e-300",
+        47,
+        9,
+        &["`every` is 1e-300 s, which is more than 1e9 times", "every_steps = 1"],
+    ),
+    ("\"paper\"", "\"rotated\"\nspacing = 0.1\nper_direction = 3", 7, 17, &["the `spacing` 0.1 m already", "remove"]),
+    (
+        "[time]\nend = 1e-3",
+        "[time]\nstart = 1e-4\nend = 1e-3\n[[regrid]]\nrefine = 2\nat = [2e-4, 0.0]",
+        41,
+        13,
+        &["0 s lies before the start of the run, 1e-4 s", "[time] start"],
+    ),
+    (
+        "\"-200\", \"0\"]",
+        "\"-200\", \"0\"]\nfrom = \"cloud\"",
+        13,
+        12,
+        &["[initial] has both `from` and `velocity`", "keep one"],
+    ),
+    (
+        "[time]",
+        "[watch]\nenergy = \"of\"\n[time]",
+        37,
+        10,
+        &["`energy` is the text \"of\"", "greater than 0, or \"off\""],
+    ),
+    ("[time]", "[watch]\nenergy = 0\n[time]", 37, 10, &["`energy` is 0", "greater than 0, or \"off\""]),
+    (
+        "degree = 2",
+        "degree = 1.0",
+        34,
+        10,
+        &["`degree` is 1.0, which has a decimal point", "without a point, such as 1"],
+    ),
+    (
+        "[curl]",
+        "[exact]\nkind = \"plastic-impact\"\n[curl]",
+        31,
+        8,
+        &["unknown `kind` \"plastic-impact\"", "`plastic-impact` is called `j2-impact` now"],
+    ),
     // groups of the rectangle
     (
         "group = \"top\"",
@@ -216,6 +275,38 @@ fn outputs_after_the_end_are_warnings_since_set_shortens_runs() {
     assert!(at.starts_with(words), "{at}");
     assert!(every.starts_with("case.toml:47:9: `every` of output \"bottom\": longer than the run, 6e-5 s"), "{every}");
     assert!(warnings(&["output.0.at=[1]"])[0].starts_with("--set output.0.at=[1]: `at`"));
+}
+
+#[test]
+fn keys_without_effect_are_warnings_since_set_changes_the_method() {
+    let find = |more: &str, sets: &[&str]| {
+        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+        let text = GOOD.replace("layout = \"paper\"", &format!("layout = \"paper\"\n{more}"));
+        Scene::parse(&text, Path::new("case.toml"), &sets).unwrap().warnings()
+    };
+    let rk = "scheme.method=rk-dgfem";
+    let j2 = "material.0={law=\"j2\",young=2e11,poisson=0.3,density=7800,yield_stress=4e8,hardening=0}";
+    let row: &[(&str, &[&str], &str, &str)] = &[
+        ("", &[rk, "scheme.sweeps=paper"], "--set scheme.sweeps=paper: `sweeps`", "rk-dgfem has no predictor"),
+        ("per_direction = 3", &[rk], "case.toml:6:17: `per_direction`", "rk-dgfem computes on the Gauss nodes"),
+        ("face_lebesgue = 9", &[rk], "case.toml:6:17: `face_lebesgue`", "no cell computes at its material points"),
+        ("condition = 9", &[rk], "case.toml:6:13: `condition`", "no cell computes at its material points"),
+        ("", &[rk, "cloud.layout=jitter"], "--set cloud.layout=jitter: `layout`", "only for exports"),
+        ("histories = \"points\"", &[rk, j2], "case.toml:6:13: `histories`", "rk-dgfem keeps internal variables"),
+        ("histories = \"points\"", &[j2, "cloud.layout=gauss"], "case.toml:6:13: `histories`", "are the Gauss nodes"),
+        ("histories = \"points\"", &[], "case.toml:6:13: `histories`", "no law of the scene has internal variables"),
+        ("", &["material.0.layout=gauss"], "case.toml:5:10: `layout`", "each [[material]] that it may concern"),
+        ("", &["scheme.degree=0", "scheme.time_degree=0"], "case.toml:31:1: `curl`", "degree 0 have no curl"),
+        ("", &["regrid=[{at=[2e-3],refine=2}]"], "--set regrid=", "1 of 1 times lie after the end of the run"),
+    ];
+    for (more, sets, place, why) in row {
+        let found = find(more, sets);
+        assert!(
+            found.len() == 1 && found[0].starts_with(place) && found[0].contains(why),
+            "{more} {sets:?}: {found:?}"
+        );
+        assert!(find("", &[rk]).is_empty(), "the good scene has no such key");
+    }
 }
 
 #[test]

@@ -4,11 +4,10 @@ use super::wave::{self, Wave};
 use crate::error::{Error, Result};
 use crate::lane::Kernel;
 use crate::mesh::{self, Mesh};
+use crate::problem::room::Wanted;
 use crate::problem::{self, Problem};
 use crate::registry::{LAYOUTS, Method};
 use crate::scene::Scene;
-use crate::state::UNKNOWNS;
-use crate::step::Tableau;
 use std::path::{Path, PathBuf};
 
 /// The mesh of a measurement.
@@ -38,9 +37,6 @@ pub struct Setup {
     /// Further `--set KEY=VALUE` of the scene, such as `curl.control=off`.
     pub sets: Vec<String>,
 }
-
-/// Bytes of a cell in the mesh, its links and blocks.
-const MESH: usize = 500;
 
 /// A setup that is ready to step.
 pub struct Subject {
@@ -104,43 +100,19 @@ impl Setup {
 
     /// Refuses what would not fit: a machine that swaps measures its disk.
     fn check_memory(&self, cells: usize, scene: &Scene) -> Result<()> {
-        let needed = self.bytes_per_cell(scene).saturating_mul(cells);
-        let available = available_memory();
-        if available.is_some_and(|available| needed > available) {
-            let gib = |bytes: usize| bytes as f64 / f64::from(1 << 30);
-            let (needed, available) = (gib(needed), gib(available.unwrap_or(0)));
-            return Err(Error::input(
+        let layout = self.layout.as_deref().and_then(|name| LAYOUTS.find(name));
+        let wanted = Wanted {
+            cells,
+            points: scene.cloud.per_direction.pow(2) as f64,
+            own_points: self.method.has_points() && layout.is_some_and(|entry| !entry.build.is_lattice),
+            own_shape: matches!(self.domain, Domain::File(_)),
+        };
+        match wanted.lacks(scene) {
+            None => Ok(()),
+            Some([needed, available]) => Err(Error::input(
                 format!("{cells} cells need about {needed:.1} GiB, {available:.1} GiB are free"),
                 "give fewer --cells, a lower --degree, or a lattice as --layout",
-            ));
+            )),
         }
-        Ok(())
     }
-
-    /// Bytes of state, work and operators of a cell, with matrices of its own where points or cells differ.
-    fn bytes_per_cell(&self, scene: &Scene) -> usize {
-        let m = self.degree + 1;
-        let (n, np) = (m * m, scene.cloud.per_direction * scene.cloud.per_direction);
-        let stages = match self.method {
-            Method::RkDgfem => Tableau::of_degree(scene.scheme.time_degree).stages(),
-            _ => 1,
-        };
-        let files = matches!(self.domain, Domain::File(_));
-        let layout = self.layout.as_deref().and_then(|name| LAYOUTS.find(name));
-        let random = self.method.has_points() && layout.is_some_and(|entry| !entry.build.is_lattice);
-        // State, its start, its copy at the end, the next one, the numbers before they are packed; rates.
-        let unknowns = (UNKNOWNS + 2) * n * (5 + stages);
-        // A trace has at most eleven numbers.
-        let geometry = 6 * n + 4 * m * 11 + 6 * np;
-        // One copy of each class while they are built, one in blocks.
-        let own = 2 * (usize::from(random) * (2 * n * np + 2 * np * np) + usize::from(files) * 2 * n * n);
-        MESH + 8 * (unknowns + geometry + own)
-    }
-}
-
-/// Free memory of the system, bytes; none where it does not tell.
-fn available_memory() -> Option<usize> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    Some(line.split_whitespace().next()?.parse::<usize>().ok()? * 1024)
 }

@@ -128,8 +128,11 @@ pub fn markdown(rows: &[Row]) -> String {
     text += &grid("predictor: share of FMA peak, 6e4 DoF", |s, d| {
         find(rows, STANDARD, s, d).filter(|row| row.figures.flops.of(Phase::Predictor as usize) > 0.0).map(predictor)
     });
-    text += &grid("curl-free projection and survey: share of a step", one(STANDARD, guards));
-    text += &grid("rate without the projection over that with it", ratio(variant("no LCF"), STANDARD, factor, rate));
+    text += &grid("control of the curl and survey: share of a step", one(STANDARD, guards));
+    text += &grid(
+        "rate without the control of the curl over that with it",
+        ratio(variant("no LCF"), STANDARD, factor, rate),
+    );
     text += &grid("rate of the linear law over neo-Hookean", ratio(variant("linear-elastic"), STANDARD, factor, rate));
     text += &grid("rate on an unstructured mesh over as many squares", {
         ratio(variant(UNSTRUCTURED), variant(AS_MANY), factor, rate)

@@ -11,13 +11,13 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 pub enum Marker {
     /// No marks: a bare line, in grey.
     Bare,
-    /// Circles: RK-DGFEM.
+    /// Circles.
     Circle,
-    /// Triangles: ADER-DGFEM.
+    /// Triangles.
     Triangle,
-    /// Squares: ADER-DGMPM.
+    /// Squares.
     Square,
-    /// Crosses: ADER-DGMPM on an arbitrary cloud.
+    /// Crosses.
     Cross,
 }
 

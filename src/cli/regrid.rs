@@ -3,6 +3,7 @@
 use super::output::keep;
 use super::print::say;
 use crate::error::{Error, Result};
+use crate::format::count;
 use crate::io::read_mesh;
 use crate::problem::{Stopped, changes};
 use crate::regrid::points::Policy;
@@ -44,9 +45,9 @@ pub fn run(args: &Args) -> Result<()> {
     let (problem, totals) = stopped.on(mesh, policy)?;
     changes(&totals).iter().for_each(say);
     problem.write_start(&to)?;
-    let (cells, root, scene) = (problem.body.mesh.cells.len(), to.root.display(), to.scene());
+    let (cells, root, scene) = (count(problem.body.mesh.cells.len(), "cell"), to.root.display(), to.scene());
     let on = format!("dgmpm run {} --out {root} --force", scene.display());
-    say(format!("the state on {cells} cells is in {root}; go on by: {on}"));
+    say(format!("the state on {cells} is in {root}; go on by: {on}"));
     Ok(())
 }
 

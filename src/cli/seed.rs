@@ -5,6 +5,7 @@ use super::output::keep;
 use super::print::say;
 use crate::cloud::Cloud;
 use crate::error::Result;
+use crate::format::count;
 use crate::io::cloud_file;
 use crate::problem::Files;
 use std::collections::BTreeMap;
@@ -43,6 +44,6 @@ pub fn report(cloud: &Cloud) {
     let mut classes = BTreeMap::new();
     cloud.first.windows(2).for_each(|w| *classes.entry(w[1] - w[0]).or_insert(0_usize) += 1);
     for (points, cells) in classes {
-        say(format!("{cells} cells with {points} points"));
+        say(format!("{} with {}", count(cells, "cell"), count(points, "point")));
     }
 }

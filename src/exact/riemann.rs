@@ -18,6 +18,7 @@ pub struct Riemann {
     /// The number of the law on the right.
     right: usize,
     sides: [Side; 2],
+    /// v1 (m/s) and P11 (Pa) between the waves.
     star: [f64; 2],
 }
 
@@ -138,26 +139,6 @@ impl Riemann {
         Some(Self { interface, right, sides, star: [v, p] })
     }
 
-    /// v1 between the waves, m/s.
-    pub fn star_velocity(&self) -> f64 {
-        self.star[0]
-    }
-
-    /// P11 between the waves, Pa.
-    pub fn star_traction(&self) -> f64 {
-        self.star[1]
-    }
-
-    /// F11 behind the wave of each side.
-    pub fn star_stretches(&self) -> [f64; 2] {
-        self.sides.each_ref().map(|side| side.behind)
-    }
-
-    /// Speeds in X of head and tail of the wave of each side, away from the interface, m/s; equal in a shock.
-    pub fn waves(&self) -> [[f64; 2]; 2] {
-        self.sides.each_ref().map(|side| [side.head, side.tail])
-    }
-
     /// F11 and its side; at t = 0 the state that was there.
     fn at(&self, x: f64, t: f64) -> (f64, &Side) {
         let distance = x - self.interface;
@@ -215,6 +196,11 @@ mod tests {
         ]
     }
 
+    /// Speeds in X of head and tail of the wave of each side, away from the interface, m/s; equal in a shock.
+    fn waves(problem: &Riemann) -> [[f64; 2]; 2] {
+        problem.sides.each_ref().map(|side| [side.head, side.tail])
+    }
+
     fn p11(law: &Law, f: [f64; 4]) -> f64 {
         law.stress(f)[0]
     }
@@ -225,7 +211,7 @@ mod tests {
             let problem = Riemann::new(&laws, states, 1.5).unwrap();
             let t = 1e-4;
             for side in 0..2 {
-                let ([head, tail], sign) = (problem.waves()[side], [-1.0, 1.0][side]);
+                let ([head, tail], sign) = (waves(&problem)[side], [-1.0, 1.0][side]);
                 let at = |rate: f64| {
                     let x = [1.5 + sign * rate * t, 0.0];
                     let f = problem.deformation(x, t);
@@ -264,7 +250,7 @@ mod tests {
             assert_eq!(problem.velocity(l, t), problem.velocity(r, t));
             // Rounding of the bisection for F11, times the modulus of 2.7e11 Pa.
             assert!((p11(&laws[0], f) - p11(&laws[1], g)).abs() < 1e-3, "{states:?}");
-            assert!((p11(&laws[0], f) - problem.star_traction()).abs() < 1e-3);
+            assert!((p11(&laws[0], f) - problem.star[1]).abs() < 1e-3);
             let same = format!("{:?}", laws[0]) == format!("{:?}", laws[1]);
             assert_eq!(same, (f[0] - g[0]).abs() < 1e-12, "{f:?} {g:?}");
         }
@@ -276,8 +262,8 @@ mod tests {
             let problem = Riemann::new(&[steel()], [[1.0, speed], [1.0, -speed]], 0.0).unwrap();
             let wall = WallImpact::new(&steel(), speed);
             // Rounding of F11: that of 1e-3 m/s is 1.7e-7.
-            assert!(problem.star_velocity().abs() < 1e-11 * speed.max(1.0), "{}", problem.star_velocity());
-            for (stretch, [head, tail]) in problem.star_stretches().into_iter().zip(problem.waves()) {
+            assert!(problem.star[0].abs() < 1e-11 * speed.max(1.0), "{}", problem.star[0]);
+            for (stretch, [head, tail]) in problem.sides.iter().map(|side| side.behind).zip(waves(&problem)) {
                 assert!((stretch - wall.stretch()).abs() < 1e-13, "{speed}");
                 assert!((head / wall.shock() - 1.0).abs() < 1e-7 && head == tail, "{speed}: {head} {}", wall.shock());
             }
@@ -289,8 +275,8 @@ mod tests {
         let (a, b) = (linear(), Law::new(LinearElastic::new(2e11, 0.3, 7800.0)));
         let problem = Riemann::new(&[a.clone(), b.clone()], [[1.0, 10.0], [1.0, -4.0]], 0.0).unwrap();
         let [za, zb] = [&a, &b].map(|law| law.density() * uniaxial_speed(law, 1.0));
-        assert!((problem.star_velocity() - (10.0 * za - 4.0 * zb) / (za + zb)).abs() < 1e-10);
-        assert!((problem.star_traction() / (-14.0 * za * zb / (za + zb)) - 1.0).abs() < 1e-11);
+        assert!((problem.star[0] - (10.0 * za - 4.0 * zb) / (za + zb)).abs() < 1e-10);
+        assert!((problem.star[1] / (-14.0 * za * zb / (za + zb)) - 1.0).abs() < 1e-11);
     }
 
     #[test]

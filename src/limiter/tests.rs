@@ -59,7 +59,7 @@ fn state(mesh: &Mesh, scheme: &Scheme, u: impl Fn([f64; 2]) -> [f64; UNKNOWNS]) 
     State::pack(&scheme.operators.blocks, n, UNKNOWNS, &cells)
 }
 
-/// A state after all cells have been limited, and which of them have changed.
+/// A state after marked cells have been limited, and the marks.
 fn limited<K: CellLimiter>(scheme: &Scheme, state: &State, limiter: &Limiter<K>) -> (State, Vec<u8>) {
     let n = scheme.operators.nodes();
     let mut notes = Notes {
@@ -70,16 +70,13 @@ fn limited<K: CellLimiter>(scheme: &Scheme, state: &State, limiter: &Limiter<K>)
     let made = Made { scheme, before: state, state, notes: &nothing, dt: 0.1, stage: None };
     limiter.look(&made, &mut notes);
     let (made, mut out) = (Made { notes: &notes, ..made }, state.clone());
-    let changed = out.u.chunks_exact_mut(UNKNOWNS * n).enumerate().map(|(number, u)| {
+    for (number, u) in out.u.chunks_exact_mut(UNKNOWNS * n).enumerate() {
         let mut block = Corrected { number, u, internal: &mut [], changed: u8::MAX };
-        if !limiter.applies(&made, number) {
-            return 0;
+        if limiter.applies(&made, number) {
+            limiter.correct(&made, &mut block);
         }
-        limiter.correct(&made, &mut block);
-        block.changed
-    });
-    let changed = changed.collect();
-    (out, changed)
+    }
+    (out, notes.marked)
 }
 
 const EVERYWHERE: Sensor = Sensor { threshold: 0.0 };
@@ -113,8 +110,8 @@ fn the_mean_of_every_cell_is_kept_on_distorted_cells() {
         let before = integrals(&scheme, &start);
         let moment = limited(&scheme, &start, &Limiter::new(degree, EVERYWHERE, MomentLimiter::default()));
         let vertex = limited(&scheme, &start, &Limiter::new(degree, EVERYWHERE, VertexLimiter));
-        for (after, changed) in [moment, vertex] {
-            assert!(changed.iter().any(|lanes| *lanes != 0) && after != start);
+        for (after, _) in [moment, vertex] {
+            assert!(after != start);
             let after = integrals(&scheme, &after);
             // Rounding of sums of 36 cells.
             assert!(before.iter().zip(after).all(|(a, b)| (a - b).abs() < 1e-14), "S{degree}: {before:?} {after:?}");
@@ -157,7 +154,7 @@ fn a_linear_state_stays_to_the_last_bit_whatever_corner_a_cell_begins_at() {
 fn behind_a_shock_no_cell_leaves_the_range_of_the_states() {
     let mesh = mesh(8, 0.0);
     let straight =
-        |x: [f64; 2]| if x[0] < 0.55 { [0.9, 0.0, 0.0, 1.0, 0.0, 0.0] } else { [1.0, 0.0, 0.0, 1.0, -0.1, 0.0] };
+        |x: [f64; 2]| if x[0] < 0.52 { [0.9, 0.0, 0.0, 1.0, 0.0, 0.0] } else { [1.0, 0.0, 0.0, 1.0, -0.1, 0.0] };
     for degree in 1..=4 {
         let scheme = scheme(&mesh, degree, vec![]);
         // The front lies in a cell, whose polynomial swings beyond both states.
@@ -203,8 +200,8 @@ fn the_sensor_marks_the_cells_at_a_shock_and_no_cell_of_a_smooth_state() {
         let scheme = scheme(&mesh, degree, vec![]);
         let (smooth, marked) = (state(&mesh, &scheme, wave), state(&mesh, &scheme, shock));
         assert_eq!(limited(&scheme, &smooth, &limiter).0, smooth, "S{degree}");
-        let (after, changed) = limited(&scheme, &marked, &limiter);
-        let cells: u32 = changed.iter().map(|lanes| lanes.count_ones()).sum();
+        let (after, marks) = limited(&scheme, &marked, &limiter);
+        let cells: u32 = marks.iter().map(|lanes| lanes.count_ones()).sum();
         // A front across 12 rows, in one or two cells of each row with a neighbour on each side; and mirrors, where v is not 0.
         assert!(after != marked && (12..=100).contains(&cells), "S{degree}: {cells}");
     }

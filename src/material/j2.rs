@@ -55,8 +55,7 @@ struct Step<L> {
 
 impl J2 {
     /// What it is, in one line.
-    pub const ABOUT: &'static str =
-        "elastoplastic (von Mises), finite strain: radial return in the logarithmic elastic strain; it has a memory";
+    pub const ABOUT: &'static str = "elastoplastic (von Mises), finite strain: radial return in the logarithmic elastic strain; it has internal variables";
 
     /// From Young's modulus (Pa), Poisson's ratio, rho0 (kg/m^3), sigma_y and H (Pa).
     pub fn new(young: f64, poisson: f64, density: f64, yield_stress: f64, hardening: f64) -> Self {

@@ -117,7 +117,7 @@ proptest! {
             let n = [angle.cos(), angle.sin()];
             let (closed, [b11, b12, b22]) = (law.moduli(f, n), law.acoustic(f, n));
             let eigenvalues = tensor::eigenvalues(b11, b12, b22);
-            let (size, gap) = (b11 + b22, eigenvalues[0] - eigenvalues[1]);
+            let (size, gap) = (b11.abs() + b22.abs(), eigenvalues[0] - eigenvalues[1]);
             // Both in some 30 operations on numbers of the size of the larger one. Half of their difference is the root of a
             // difference of squares, whose rounding it divides: near to each other they are known to the root of rounding.
             let allowed = (1e-14 * size * (1.0 + size / gap.max(f64::MIN_POSITIVE))).min(1e-7 * size);
@@ -130,7 +130,11 @@ proptest! {
     #[test]
     fn largest_speed_bounds_the_speed_in_every_direction(f in deformation(), angle in 0.0..6.3f64) {
         for law in laws() {
-            let largest = law.largest_speeds(f, &law.virgin())[0];
+            let [largest, smallest] = law.largest_speeds(f, &law.virgin());
+            // St. Venant-Kirchhoff is not hyperbolic everywhere.
+            if smallest.is_nan() {
+                continue;
+            }
             let c = law.speeds(f, [angle.cos(), angle.sin()])[0];
             prop_assert!(c <= largest * (1.0 + 1e-12), "{c} {largest}");
         }

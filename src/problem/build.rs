@@ -1,14 +1,14 @@
 //! Where names become types: from a scene to mesh, laws, conditions, sources, time integration and scheme.
 
-use crate::boundary::{self, Data};
+use crate::boundary;
 use crate::cloud::Cloud;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::exact::ExactForce;
+use crate::expression::Expression;
 use crate::io::read_mesh;
 use crate::lane::Kernel;
 use crate::mesh::{self, Link, Mesh};
 use crate::operators::{Limits, Needs, Operators, Sampling};
-use crate::registry::data;
 use crate::registry::methods::Samples;
 use crate::run::Limits as WatchLimits;
 use crate::run::Settings;
@@ -24,8 +24,12 @@ impl Scene {
     /// Bad input, with its place.
     pub fn build_mesh(&self) -> Result<Mesh> {
         let mesh = match &self.mesh {
-            Source::Rectangle { size, cells } => mesh::rectangle(*size, *cells)?,
-            Source::File(path) => read_mesh(&self.resolve(path))?,
+            Source::Rectangle { size, cells } => {
+                self.check_room("mesh.rectangle.cells", cells[0].saturating_mul(cells[1]))?;
+                let place = || self.place("mesh.rectangle.cells");
+                mesh::rectangle(*size, *cells).map_err(|why| Error::from(why).or_at(place()))?
+            }
+            Source::File(path) => read_mesh(&self.existing("mesh.file", path)?)?,
         };
         self.check_mesh(&mesh)?;
         self.check_exact_materials(&mesh)?;
@@ -137,11 +141,11 @@ impl Scene {
     }
 
     /// The speeds that conditions prescribe: the group, and one component (along N) or both, m/s.
-    pub fn prescribed_speeds(&self) -> Vec<(&str, Vec<Data>)> {
-        let of = |boundary: &Boundary| {
+    pub fn prescribed_speeds(&self) -> Vec<(&str, Vec<&Expression>)> {
+        fn of(boundary: &Boundary) -> Vec<&Expression> {
             let speeds = boundary.condition.expressions().filter(|(parameter, _)| parameter.unit == "m/s");
-            speeds.flat_map(|(_, all)| all).map(data).collect()
-        };
+            speeds.flat_map(|(_, all)| all).collect()
+        }
         self.boundaries.iter().map(|boundary| (boundary.group.as_str(), of(boundary))).collect()
     }
 

@@ -96,7 +96,9 @@ fn why(cause: Cause, limits: &Limits) -> String {
         Cause::Rank => "with points in bad places".to_owned(),
         Cause::Lebesgue => format!("beyond a Lebesgue constant of {}", limits.lebesgue),
         Cause::Condition => format!("beyond a condition of {:e}", limits.condition),
-        Cause::Memory => "their law has memory and their points are not on the Gauss nodes".to_owned(),
+        Cause::Memory => {
+            "their law has memory (internal variables) and their points are not on the Gauss nodes".to_owned()
+        }
     }
 }
 

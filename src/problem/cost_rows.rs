@@ -1,7 +1,7 @@
 //! What a problem is made of and what its run will cost, as rows of a table.
 
 use super::{Cost, Problem, certificates};
-use crate::format::{Row, mebibytes, row, seconds};
+use crate::format::{Row, count, mebibytes, row, seconds};
 use crate::operators::{Certificate, Pool};
 
 impl Cost {
@@ -19,7 +19,7 @@ impl Cost {
             rows.push(row("point matrices", classes(&points.pool)));
         }
         if let Some(curl_free) = &operators.curl_free {
-            rows.push(row("curl-free projections", classes(&curl_free.pool)));
+            rows.push(row("matrices of the curl control", classes(&curl_free.pool)));
         }
         rows.push(row("memory", mebibytes(self.bytes)));
         let smallest = extreme(&self.certificates, |c| -c.h).1;
@@ -27,7 +27,7 @@ impl Cost {
         let (lebesgue, cell) = extreme(&self.certificates, |c| c.lebesgue);
         rows.push(row("largest face Lebesgue constant", format!("{lebesgue:.2} in cell {}", mesh.number(cell))));
         rows.extend(certificates::rows(mesh, &self.certificates));
-        rows.push(row("estimate", format!("{:.0} steps, {}", self.steps, seconds(self.seconds))));
+        rows.push(row("estimate", format!("{}, {}", count(self.steps as usize, "step"), seconds(self.seconds))));
         rows
     }
 }
@@ -41,5 +41,5 @@ fn extreme(certificates: &[Certificate], figure: impl Fn(&Certificate) -> f64) -
 }
 
 fn classes<S, O>(pool: &Pool<S, O>) -> String {
-    format!("{} shared by congruent cells, {} blocks with their own", pool.shared.len(), pool.own.len())
+    format!("{} shared by congruent cells, {} with their own", pool.shared.len(), count(pool.own.len(), "block"))
 }

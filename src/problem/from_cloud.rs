@@ -75,7 +75,7 @@ impl Scene {
         });
         component.ok_or_else(|| {
             let what = format!("the cloud file has no internal variable `{name}`, which a law of this scene has");
-            self.error("initial.from", what, "export the run with all fields, or give laws without memory")
+            self.error("initial.from", what, "export the run with all fields, or give laws without internal variables")
         })
     }
 

@@ -46,24 +46,8 @@ impl Scene {
     /// A snapshot of another grid, degree, law or time.
     pub(super) fn state_of_snapshot(&self, path: &Path, scheme: &Scheme) -> Result<State> {
         let snapshot = Snapshot::read(path)?;
-        let cells = scheme.operators.blocks.slot.len();
+        self.check_snapshot(&snapshot, scheme.operators.blocks.slot.len())?;
         let fail = |what: String, remedy: &str| self.error("initial.snapshot", what, remedy);
-        if snapshot.cells() != cells || snapshot.degree != scheme.operators.degree {
-            let (given, degree) = (snapshot.cells(), snapshot.degree);
-            let what = format!(
-                "the snapshot has {given} cells of degree {degree}, the scene {cells} of {}",
-                scheme.operators.degree
-            );
-            return Err(fail(what, "give the mesh of that run, or bring it over by `dgmpm regrid`"));
-        }
-        if snapshot.time >= self.end {
-            let what = format!("the snapshot is at {:e} s, and the run ends at {:e} s", snapshot.time, self.end);
-            return Err(fail(what, "give a later time.end"));
-        }
-        if self.wants_displacement() && snapshot.displacement.is_empty() {
-            let what = "an output asks for the displacement, which the snapshot lacks".to_owned();
-            return Err(fail(what, "leave out the field `displacement` and the balance of the ledger"));
-        }
         if snapshot.internal.len() != scheme.virgin_internal().len() {
             let what = "the snapshot has the internal variables of other laws or points".to_owned();
             return Err(fail(what, "give the materials and the cloud of that run"));
@@ -76,5 +60,27 @@ impl Scene {
         }
         // Where no output asks for it, the displacement may count from here: what is held are jumps that come now.
         Ok(unpacked(&snapshot, scheme, self.components()))
+    }
+
+    /// Whether a snapshot is of a mesh of so many cells, of the degree and within the time of the scene.
+    pub(super) fn check_snapshot(&self, snapshot: &Snapshot, cells: usize) -> Result<()> {
+        let fail = |what: String, remedy: &str| self.error("initial.snapshot", what, remedy);
+        if snapshot.cells() != cells || snapshot.degree != self.scheme.degree {
+            let (given, degree) = (snapshot.cells(), snapshot.degree);
+            let what = format!(
+                "the snapshot has {given} cells of degree {degree}, the scene {cells} of {}",
+                self.scheme.degree
+            );
+            return Err(fail(what, "give the mesh of that run, or bring it over by `dgmpm regrid`"));
+        }
+        if snapshot.time >= self.end {
+            let what = format!("the snapshot is at {:e} s, and the run ends at {:e} s", snapshot.time, self.end);
+            return Err(fail(what, "give a later time.end"));
+        }
+        if self.wants_displacement() && snapshot.displacement.is_empty() {
+            let what = "an output asks for the displacement, which the snapshot lacks".to_owned();
+            return Err(fail(what, "leave out the field `displacement` and the balance of the ledger"));
+        }
+        Ok(())
     }
 }

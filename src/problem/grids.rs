@@ -29,6 +29,10 @@ impl Rule for Numbered<'_> {
         self.0.check_mesh(mesh)
     }
 
+    fn has_room(&self, key: &str, cells: usize) -> Result<()> {
+        self.0.check_room(&format!("regrid.{}.{key}", self.1), cells)
+    }
+
     fn wrong(&self, key: &str, what: String, remedy: &str) -> Error {
         self.0.error(&format!("regrid.{}.{key}", self.1), what, remedy)
     }

@@ -2,6 +2,7 @@
 
 use super::Problem;
 use crate::error::{Error, Result};
+use crate::format::count;
 use crate::operators::Sampling;
 use crate::operators::certificate::certify;
 use crate::registry::fluxes;
@@ -33,7 +34,7 @@ pub struct Case<'a> {
 /// Where the state is that a run which lost stability has kept.
 pub fn kept(lost: &Lost, file: &Result<PathBuf>) -> String {
     let (State { step, time, .. }, before) = (&lost.kept, lost.step - lost.kept.step);
-    let state = format!("the good state of step {step}, t = {time:.9e} s, {before} steps before,");
+    let state = format!("the good state of step {step}, t = {time:.9e} s, {} before,", count(before, "step"));
     match file {
         Ok(path) => format!("{state} is in {}: a run goes on from it by [initial] snapshot", path.display()),
         Err(why) => format!("{state} could not be kept: {why}"),
@@ -46,13 +47,13 @@ impl Case<'_> {
     pub fn error(&self, kept: &str) -> Error {
         let Self { problem, lost, .. } = self;
         let scene = &problem.scene;
-        if lost.loss.kind == LossKind::NotFinite {
-            let times = problem.scheme.data_times(lost.time, lost.dt);
-            if let Some(culprit) = scene.culprit(&problem.body.mesh, &problem.scheme, lost.loss.cell, &times) {
-                let what = format!("step {}, t = {:.9e} s: {}", lost.step, lost.time, culprit.what);
-                let remedy = format!("give an expression that is finite at all places and times of the run\n  {kept}");
-                return scene.error(&culprit.key, what, remedy);
-            }
+        // An expression that grows beyond bounds at the start or end of the step turns cells inside out before it is infinite.
+        let mut times = problem.scheme.data_times(lost.time, lost.dt);
+        times.extend([lost.time, lost.time + lost.dt]);
+        if let Some(culprit) = scene.culprit(&problem.body.mesh, &problem.scheme, lost.loss.cell, &times) {
+            let what = format!("step {}, t = {:.9e} s: {}", lost.step, lost.time, culprit.what);
+            let remedy = format!("give an expression that is finite at all places and times of the run\n  {kept}");
+            return scene.error(&culprit.key, what, remedy);
         }
         let hints = self.hints().join("\n  - ");
         Error::Unstable {
@@ -106,8 +107,10 @@ impl Case<'_> {
         let Lost { step, since, .. } = self.lost;
         let began = self.problem.state.step.saturating_sub(self.report.steps);
         (*since > began).then(|| {
-            let before = step - since;
-            format!("the grid was new at step {since}, {before} steps before: let the run begin with it, or regrid less often")
+            let before = count(step - since, "step");
+            format!(
+                "the grid was new at step {since}, {before} before: let the run begin with it, or regrid less often"
+            )
         })
     }
 

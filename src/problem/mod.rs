@@ -35,6 +35,7 @@ mod outputs;
 mod points;
 mod rebuild;
 mod record;
+pub mod room;
 mod solve;
 mod start;
 mod stopped;
@@ -166,6 +167,7 @@ impl<'a> Setup<'a> {
     /// Bad input, with its place.
     pub fn build_on(self, body: Body) -> Result<Problem> {
         let scene = self.scene;
+        scene.check_start(&body.mesh)?;
         self.build_from(body, |mesh, scheme| scene.initial_state(mesh, scheme))
     }
 

@@ -2,11 +2,10 @@
 //! other units.
 
 use super::{Cost, Problem};
-use crate::boundary::Data;
 use crate::mesh::parts::{EdgeCount, Part, parts};
 use crate::mesh::{BoundaryEdge, Link, Mesh};
 use crate::operators::{Blocks, Neighbour};
-use crate::scene::Scene;
+use crate::scene::{Scene, When};
 use crate::state::State;
 use crate::step::{Scheme, Survey, cfl};
 
@@ -38,6 +37,7 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     all.extend(fast_start(mesh, scheme, state, survey));
     all.extend(fast_boundary(scene, mesh, scheme));
     all.extend(thin(mesh, blocks, scene.scheme.degree));
+    all.extend(short(scene, *dt));
     let notice = scene.curl.build().notice;
     all.extend((!notice.is_empty()).then(|| notice.to_owned()));
     if *steps <= 1.0 {
@@ -117,6 +117,20 @@ fn thin(mesh: &Mesh, blocks: &Blocks, degree: usize) -> Option<String> {
     ))
 }
 
+/// A word on each output and change of grid whose interval is below the first step, s.
+fn short(scene: &Scene, dt: f64) -> Vec<String> {
+    let outputs =
+        scene.outputs.iter().map(|output| (format!("output \"{}\"", output.name), &output.when, output.exact_times));
+    let regrids = scene.regrids.iter().map(|regrid| ("[[regrid]]".to_owned(), &regrid.when, regrid.exact_times));
+    let text = |(of, when, exact): (String, &When, bool)| match when {
+        When::Every(interval) if *interval < dt && !exact => Some(format!(
+            "`every` of {of} is {interval:e} s, shorter than a step of {dt:.3e} s: it is due at each step"
+        )),
+        _ => None,
+    };
+    outputs.chain(regrids).filter_map(text).collect()
+}
+
 fn large(mesh: &Mesh) -> Option<String> {
     let [low, high] = mesh.extent();
     let size = [0, 1].map(|axis| high[axis] - low[axis]);
@@ -157,14 +171,17 @@ fn fast_boundary(scene: &Scene, mesh: &Mesh, scheme: &Scheme) -> Vec<String> {
         let largest = |edge: &BoundaryEdge| {
             let [a, b] = mesh.face_nodes(edge.cell, edge.face).map(|node| mesh.nodes[node]);
             let x = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-            let at = |t: f64| components.iter().map(|data: &Data| data(x, t)).fold(0.0, f64::hypot);
+            let at = |t: f64| components.iter().map(|speed| speed.eval(x, t)).fold(0.0, f64::hypot);
             times.map(at).into_iter().fold(0.0, f64::max)
         };
         let edges = mesh.edges.iter().filter(|edge| mesh.edge_groups[edge.group] == name);
         let v = edges.map(largest).fold(0.0, f64::max);
         if v > c {
+            let sources: Vec<String> = components.iter().map(|speed| format!("`{}`", speed.source())).collect();
             all.push(format!(
-                "the speed of the boundary `{name}` is {v:.4e} m/s, above the wave speed {c:.4e} m/s; {SPEEDS}"
+                "the speed of the boundary `{name}` is {v:.4e} m/s, above the wave speed {c:.4e} m/s: its expression is {}; \
+                 {SPEEDS}",
+                sources.join(", ")
             ));
         }
     }

@@ -2,6 +2,7 @@
 
 use super::Body;
 use super::moved::{Moved, scale};
+use crate::format::count;
 use crate::state::UNKNOWNS;
 use crate::step::Totals;
 use std::time::Instant;
@@ -137,8 +138,8 @@ impl Outcome<'_> {
             ));
         }
         if placed.outside > 0 {
-            let points = placed.outside;
-            words.push(format!("  {points} points lie outside of the new mesh, and are gone with their histories"));
+            let (points, lie) = (count(placed.outside, "point"), if placed.outside == 1 { "lies" } else { "lie" });
+            words.push(format!("  {points} {lie} outside of the new mesh, and the internal variables there are gone"));
         }
         let phases: Vec<String> = PHASES.iter().zip(clock.seconds).map(|(name, s)| format!("{name} {s:.4}")).collect();
         words.push(format!("  seconds: {}", phases.join(", ")));

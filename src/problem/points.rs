@@ -63,7 +63,7 @@ impl Scene {
     /// The material points.
     ///
     /// # Errors
-    /// A cloud file that does not fit the mesh.
+    /// A cloud file that does not fit the mesh; more points than the memory holds.
     pub fn build_cloud(&self, mesh: &Mesh) -> Result<Cloud> {
         Ok(self.given_points(mesh)?.cloud)
     }
@@ -71,24 +71,28 @@ impl Scene {
     /// The material points, with what a file says of them.
     ///
     /// # Errors
-    /// A cloud file that does not fit the mesh.
+    /// A cloud file that does not fit the mesh; more points than the memory holds.
     pub fn given_points(&self, mesh: &Mesh) -> Result<Given> {
+        self.check_room("mesh", mesh.cells.len())?;
         match self.cloud_path() {
-            Some(path) => read_points(&path, mesh),
-            None => Ok(Given { cloud: self.seeded(mesh), ..Given::default() }),
+            Some(_) => {
+                read_points(&self.existing("cloud.path", Path::new(self.cloud.layout.values.text("path")))?, mesh)
+            }
+            None => Ok(Given { cloud: self.seeded(mesh)?, ..Given::default() }),
         }
     }
 
     /// The material points of a scene without a cloud file.
-    fn seeded(&self, mesh: &Mesh) -> Cloud {
+    fn seeded(&self, mesh: &Mesh) -> Result<Cloud> {
         let material = self.material_of_cells(mesh);
         // Materials of one pattern are one body to it.
         let mut bodies: Vec<(&Choice, Cloud)> = Vec::new();
-        for choice in self.materials.iter().map(|m| &m.cloud) {
+        for (number, choice) in self.materials.iter().map(|m| &m.cloud).enumerate() {
             if let Points::Body(points) = choice.layout.build().points
                 && bodies.iter().all(|(known, _)| *known != choice)
             {
                 let member: Vec<bool> = material.iter().map(|&m| self.materials[m].cloud == *choice).collect();
+                self.check_room_of_points(mesh, &member, number)?;
                 bodies.push((choice, points(&choice.layout.values, mesh, &member, choice.per_direction)));
             }
         }
@@ -111,7 +115,7 @@ impl Scene {
                 }
             }
         };
-        Cloud::of_cells(mesh.cells.len(), push)
+        Ok(Cloud::of_cells(mesh.cells.len(), push))
     }
 
     /// The material points of the run: where the method has points, virtual ones stand in cells that cannot carry the

@@ -99,10 +99,13 @@ impl<'a> Regrids<'a> {
     pub fn rebuild(&mut self, problem: &mut Problem) -> Result<(Vec<String>, Option<[Totals; 2]>)> {
         let Some((rule, mesh)) = self.next.take() else { return Ok((vec![], None)) };
         let mut clock = Clock::new();
-        let mesh = mesh?;
+        let rule_of = &self.scene.regrids[rule];
+        let place = || self.scene.place(&format!("regrid.{rule}.{}", rule_of.grid.name()));
+        let mesh = mesh.map_err(|why| why.or_at(place()))?;
         clock.lap("mesh");
-        let (policy, recent) = (self.scene.regrids[rule].points, &mut self.recent);
-        let moved = problem.moved(mesh, policy, |scene, body| recent.operators(scene, body), &mut clock)?;
+        let (policy, recent) = (rule_of.points, &mut self.recent);
+        let moved = problem.moved(mesh, policy, |scene, body| recent.operators(scene, body), &mut clock);
+        let moved = moved.map_err(|why| why.or_at(place()))?;
         let (step, time) = (problem.state.step, problem.state.time);
         let Some(moved) = moved else {
             return Ok((vec![format!("regrid at step {step}, t = {time:.6e} s: the grid is the same")], None));

@@ -1,12 +1,16 @@
 //! The initial state of a scene: from its expressions, its exact solution, a snapshot or the fields of its cloud.
 
 use crate::error::Result;
+use crate::exact::Exact;
 use crate::expression::Expression;
+use crate::io::snapshot::Snapshot;
 use crate::mesh::{self, Mesh};
+use crate::operators::Line;
 use crate::scene::{self, Scene};
 use crate::state::State;
 use crate::step::Scheme;
 use crate::tensor;
+use std::sync::Arc;
 
 impl Scene {
     /// The initial state: F and p at the grid nodes from the scene's expressions, from its exact solution, or from the
@@ -16,28 +20,20 @@ impl Scene {
     /// A value that is not finite, or J <= 0, with its place in the mesh.
     pub fn initial_state(&self, mesh: &Mesh, scheme: &Scheme) -> Result<State> {
         if let Some(path) = &self.initial.snapshot {
-            return self.state_of_snapshot(&self.resolve(path), scheme);
+            return self.state_of_snapshot(&self.existing("initial.snapshot", path)?, scheme);
         }
         if self.initial.from_cloud {
             return self.state_from_cloud(mesh, scheme);
         }
-        let (basis, n) = (&scheme.operators.line.basis, scheme.operators.nodes());
+        let n = scheme.operators.nodes();
         let components = self.components();
         let mut cells = vec![0.0; mesh.cells.len() * components * n];
         let material = self.material_of_cells(mesh);
-        let exact = self.exact.as_ref().filter(|exact| exact.initial).and_then(|_| self.build_exact());
+        let start = Start::of(self, mesh, &scheme.operators.line);
         for (cell, values) in cells.chunks_mut(components * n).enumerate() {
             let density = scheme.laws[material[cell]].density();
             for a in 0..n {
-                let x = mesh::map::position(&mesh.corners(cell), basis.node_2d(a));
-                let (f, v) = match &exact {
-                    Some(exact) => (exact.deformation(x, self.start), exact.velocity(x, self.start)),
-                    None => {
-                        self.check_initial_expressions(x, mesh.number(cell))?;
-                        self.initial.at(x)
-                    }
-                };
-                self.check_initial(f, v, x, mesh.number(cell))?;
+                let (f, v) = start.at(cell, a)?;
                 let u = [f[0], f[1], f[2], f[3], density * v[0], density * v[1]];
                 u.into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
             }
@@ -45,6 +41,27 @@ impl Scene {
         let mut state = State { time: self.start, ..State::pack(&scheme.operators.blocks, n, components, &cells) };
         scheme.set_internal(&mut state, &scheme.virgin_internal());
         Ok(state)
+    }
+
+    /// Looks for what is wrong with the initial state before matrices are built and written for it.
+    ///
+    /// # Errors
+    /// As [`Scene::initial_state`]; what is at the points and faces alone is found by the first step.
+    pub fn check_start(&self, mesh: &Mesh) -> Result<()> {
+        if let Some(path) = &self.initial.snapshot {
+            let snapshot = Snapshot::read(&self.existing("initial.snapshot", path)?)?;
+            return self.check_snapshot(&snapshot, mesh.cells.len());
+        }
+        if self.initial.from_cloud {
+            return Ok(());
+        }
+        let line = Line::new(self.scheme.degree);
+        let (start, n) = (Start::of(self, mesh, &line), line.m * line.m);
+        let all = self.initial.velocity.iter().chain(&self.initial.deformation);
+        let varies = start.exact.is_none() && all.map(Expression::constant).any(|value| value.is_none());
+        // What is the same at all nodes is looked at once. An exact solution is good within its ranges: one look is enough, too.
+        let cells = if varies { mesh.cells.len() } else { 1 };
+        (0..cells).try_for_each(|cell| (0..n).try_for_each(|a| start.at(cell, a).map(drop)))
     }
 
     /// Whether the expressions of the initial fields are finite at X.
@@ -80,6 +97,36 @@ impl Scene {
             return Err(self.error("initial.deformation", what, "give expressions with F11 F22 - F12 F21 > 0"));
         }
         Ok(())
+    }
+}
+
+/// F and v of the start at the nodes of a mesh.
+struct Start<'a> {
+    scene: &'a Scene,
+    mesh: &'a Mesh,
+    line: &'a Line,
+    exact: Option<Arc<dyn Exact>>,
+}
+
+impl<'a> Start<'a> {
+    fn of(scene: &'a Scene, mesh: &'a Mesh, line: &'a Line) -> Self {
+        let exact = scene.exact.as_ref().filter(|exact| exact.initial).and_then(|_| scene.build_exact());
+        Self { scene, mesh, line, exact }
+    }
+
+    /// At a node of a cell.
+    fn at(&self, cell: usize, node: usize) -> Result<([f64; 4], [f64; 2])> {
+        let Self { scene, mesh, .. } = self;
+        let x = mesh::map::position(&mesh.corners(cell), self.line.basis.node_2d(node));
+        let (f, v) = match &self.exact {
+            Some(exact) => (exact.deformation(x, scene.start), exact.velocity(x, scene.start)),
+            None => {
+                scene.check_initial_expressions(x, mesh.number(cell))?;
+                scene.initial.at(x)
+            }
+        };
+        scene.check_initial(f, v, x, mesh.number(cell))?;
+        Ok((f, v))
     }
 }
 

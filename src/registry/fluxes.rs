@@ -17,9 +17,9 @@ pub struct Flux {
 pub const DEFAULT: &str = "dual";
 
 /// The same in words, see [`super::limiters::Kind::flux`].
-pub const DEFAULTS: &str = "dual; rusanov with a limiter and laws without memory";
+pub const DEFAULTS: &str = "dual; rusanov with a limiter and laws without internal variables";
 
-const WITH_MEMORY: &str = "makes energy where a law with memory flows";
+const WITH_MEMORY: &str = "makes energy where a law with internal variables flows";
 
 const OTHER: &str = "scheme.flux = \"rusanov\" damps all jumps of F, and holds some corners that are crushed";
 

@@ -79,7 +79,7 @@ pub static LAYOUTS: Table<Layout> = Table::new(&[
     },
     Entry {
         name: "gauss",
-        about: "lattice of Gauss-Legendre points; the default for laws with memory",
+        about: "lattice of Gauss-Legendre points; the default for laws with internal variables",
         parameters: &[],
         check: ANY,
         build: Layout { on_nodes: true, ..lattice(|_| of(seed::Layout::Gauss)) },

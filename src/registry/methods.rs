@@ -2,6 +2,7 @@
 
 use super::{ANY, Entry, Table};
 use crate::basis::TimeBasis;
+use crate::chart::{Marker, Stroke};
 use crate::step::{Method as Integration, Sweeps as Picard, Tableau};
 
 names! {
@@ -34,6 +35,10 @@ pub struct Build {
     pub samples: Option<Samples>,
     /// Time integration of degree N_T for degree N in space, with a schedule of sweeps where it has any.
     pub integration: fn(usize, usize, Sweeps) -> Integration,
+    /// The marks of its lines in plots.
+    pub marker: Marker,
+    /// What joins them.
+    pub stroke: Stroke,
 }
 
 /// Where a predictor samples.
@@ -52,14 +57,26 @@ pub static METHODS: Table<Build> = Table::new(&[
         about: "ADER-DG on material points: the method of the paper",
         parameters: &[],
         check: ANY,
-        build: Build { method: Method::AderDgmpm, samples: Some(Samples::Points), integration: ader },
+        build: Build {
+            method: Method::AderDgmpm,
+            samples: Some(Samples::Points),
+            integration: ader,
+            marker: Marker::Square,
+            stroke: Stroke::Full,
+        },
     },
     Entry {
         name: "ader-dgfem",
         about: "ADER-DG with the Gauss nodes as points",
         parameters: &[],
         check: ANY,
-        build: Build { method: Method::AderDgfem, samples: Some(Samples::Nodes), integration: ader },
+        build: Build {
+            method: Method::AderDgfem,
+            samples: Some(Samples::Nodes),
+            integration: ader,
+            marker: Marker::Triangle,
+            stroke: Stroke::Dashed,
+        },
     },
     Entry {
         name: "rk-dgfem",
@@ -70,6 +87,8 @@ pub static METHODS: Table<Build> = Table::new(&[
             method: Method::RkDgfem,
             samples: None,
             integration: |_, n_t, _| Integration::RungeKutta(Tableau::of_degree(n_t)),
+            marker: Marker::Circle,
+            stroke: Stroke::Dotted,
         },
     },
 ]);

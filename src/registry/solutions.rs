@@ -145,7 +145,7 @@ pub fn check(solution: &Chosen<Solution>, laws: &[(&str, Law)], end: f64) -> Res
             SOLUTIONS.iter().filter(|entry| entry.build.laws.contains(law)).map(|entry| entry.name).collect();
         return match of_law[..] {
             _ if !wanted.is_empty() => wrong(what, format!("give the material law = {}", quoted(wanted))),
-            [] => wrong(what, "give a law without memory".to_owned()),
+            [] => wrong(what, "give a law without internal variables".to_owned()),
             _ => wrong(what, format!("for law = \"{law}\" there is {}", quoted(&of_law))),
         };
     }

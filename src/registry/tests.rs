@@ -122,6 +122,8 @@ fn what_stands_in_the_registry_and_where_it_is_written_has_one_name() {
         assert_eq!((entry.name, entry.build.method.build().method), (entry.build.method.name(), entry.build.method));
     }
     assert_eq!(METHODS.len(), Method::NAMES.len());
+    let looks = METHODS.iter().map(|entry| format!("{:?} {:?}", entry.build.marker, entry.build.stroke));
+    assert_eq!(looks.collect::<BTreeSet<_>>().len(), METHODS.len(), "lines of two methods look alike in plots");
     for default in [2, 3].map(layouts::default_name).into_iter().chain([layouts::WITH_MEMORY]) {
         assert!(LAYOUTS.find(default).is_some(), "{default}");
     }

@@ -299,9 +299,11 @@ fn refuse(uncovered: [f64; 2], whole: f64) -> Result<(), Error> {
     if uncovered[0].max(uncovered[1]) <= LARGEST_DIFFERENCE * whole {
         return Ok(());
     }
+    // Rounding makes a share that is covered wholly a little less than nothing.
+    let [new, old] = uncovered.map(|area| area.max(0.0) + 0.0);
     let what = format!(
         "the new grid is not a grid of the same body: {:.3e} m^2 of it lie outside of the old grid, and it does not cover {:.3e} m^2 of the old grid (area {whole:.3e} m^2)",
-        uncovered[0], uncovered[1]
+        new, old
     );
     let remedy = format!(
         "give a mesh of the same body in its initial configuration with the same groups; only the edges at a curved boundary may differ, by at most {LARGEST_DIFFERENCE} of the area"

@@ -94,7 +94,7 @@ impl Reader<'_> {
                 let Some(item) = self.item(key) else { return Ok(None) };
                 let number = item.as_integer().and_then(|n| usize::try_from(n).ok());
                 let number = number.filter(|n| (from..=to).contains(&n));
-                Some(Value::Integer(number.ok_or_else(|| self.not(key, &form.words(""), item))?))
+                Some(Value::Integer(number.ok_or_else(|| self.not_whole(key, &form.words(""), item))?))
             }
             Form::Boolean => self.boolean(key)?.map(Value::Boolean),
             Form::Numbers(check) => self.numbers(parameter, check)?.map(Value::Numbers),
@@ -125,7 +125,11 @@ impl Reader<'_> {
                 (!all.is_empty()).then_some(Value::Tables(all))
             }
             Form::Or(word, _) if self.is_text(key, word) => self.text(key)?.map(Value::Text),
-            Form::Or(_, other) => return self.value_of(parameter, other),
+            Form::Or(word, other) => {
+                return self
+                    .value_of(parameter, other)
+                    .map_err(|why| why.with_remedy(|remedy| format!("{remedy}, or \"{word}\"")));
+            }
         })
     }
 

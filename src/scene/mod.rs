@@ -17,6 +17,8 @@ mod reference;
 pub mod regrid;
 mod sets;
 mod tables;
+mod times;
+mod warnings;
 
 use std::path::{Path, PathBuf};
 
@@ -245,11 +247,14 @@ impl Scene {
     pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Self> {
         let original = document(text, path)?;
         let mut origin =
-            Origin { path: path.to_owned(), text: text.to_owned(), run: text.to_owned(), sets: Vec::new() };
+            Origin { path: path.to_owned(), text: text.to_owned(), run: text.to_owned(), ..Origin::default() };
         if !sets.is_empty() {
             let mut changed: DocumentMut = original.into_mut();
             for argument in sets {
-                origin.sets.push((sets::apply(&mut changed, argument)?, argument.clone()));
+                let (path, removed) = sets::apply(&mut changed, argument, &origin.sets)?;
+                origin.sets.push((path, argument.clone()));
+                let words = |key: String| format!("--set {argument}: takes the place of `{key}` in the scene file");
+                origin.replaced.extend(removed.into_iter().map(words));
             }
             origin.run = changed.to_string();
         }
@@ -291,6 +296,26 @@ impl Scene {
         self.origin.path.parent().map_or_else(|| path.to_owned(), |folder| folder.join(path))
     }
 
+    /// The file that a key names, which has to be there.
+    ///
+    /// # Errors
+    /// There is no such file.
+    pub(crate) fn existing(&self, key: &str, path: &Path) -> Result<PathBuf> {
+        let file = self.resolve(path);
+        match file.exists() {
+            true => Ok(file),
+            false => {
+                let what = format!("there is no file {}", file.display());
+                Err(self.error(key, what, "give the path of a file, relative to the scene file"))
+            }
+        }
+    }
+
+    /// Whether the scene gives a key such as `scheme.cfl`.
+    pub(crate) fn gives(&self, key: &str) -> bool {
+        self.origin.given().has(key)
+    }
+
     /// The mesh file, if the mesh is one.
     pub fn mesh_path(&self) -> Option<PathBuf> {
         match &self.mesh {
@@ -314,8 +339,8 @@ impl Scene {
             .map_err(|fault| self.error(&fault.key, fault.what, fault.remedy))
     }
 
-    /// Where the value of a key stands.
-    fn place(&self, key: &str) -> Place {
+    /// Where the value of a key such as `scheme.cfl` or `boundary.0.group` stands.
+    pub(crate) fn place(&self, key: &str) -> Place {
         let path: Vec<String> = key.split('.').map(str::to_owned).collect();
         self.origin.place(&path, Part::Value)
     }

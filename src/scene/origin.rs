@@ -18,6 +18,19 @@ pub(super) struct Origin {
     pub(super) run: String,
     /// The overrides: key path and the argument of `--set`.
     pub(super) sets: Vec<(Vec<String>, String)>,
+    /// Keys of the file that gave way to an override, each in words.
+    pub(super) replaced: Vec<String>,
+}
+
+/// The keys of a scene after overrides.
+pub(super) struct Given<'a>(Option<Document<&'a str>>);
+
+impl Given<'_> {
+    /// Whether the scene has a key such as `boundary.0.kind`.
+    pub(super) fn has(&self, key: &str) -> bool {
+        let root = self.0.as_ref().map(|document| document.as_item());
+        key.split('.').try_fold(root, |item, key| Some(Some(child(item?, key)?.1))).is_some_and(|item| item.is_some())
+    }
 }
 
 /// What of a key a message is about.
@@ -32,6 +45,11 @@ pub(super) enum Part {
 }
 
 impl Origin {
+    /// The keys of the scene.
+    pub(super) fn given(&self) -> Given<'_> {
+        Given(Document::parse(&self.run[..]).ok())
+    }
+
     /// Bad input at a key.
     pub(super) fn error(
         &self,

@@ -100,6 +100,7 @@ fn points(table: &mut Reader, layout: Option<&'static Entry<Layout>>, default: C
         false => table.values(&[PER_DIRECTION])?.maybe_integer(PER_DIRECTION.name),
     };
     let Some(entry) = layout else {
+        one_measure(table, &default.layout)?;
         return Ok(Cloud { per_direction: given.unwrap_or(default.per_direction), ..default });
     };
     let mut values = table.values(entry.parameters)?;
@@ -108,5 +109,18 @@ fn points(table: &mut Reader, layout: Option<&'static Entry<Layout>>, default: C
     let more = entry.build.more;
     let usual = if more > 0 { degree + 1 + more } else { default.per_direction };
     let per_direction = given.unwrap_or(usual.max(default.per_direction));
-    Ok(Cloud { layout: Chosen { entry, values }, per_direction })
+    let layout = Chosen { entry, values };
+    one_measure(table, &layout)?;
+    Ok(Cloud { layout, per_direction })
+}
+
+/// Where a layout has a distance of its points, a number of them says nothing.
+fn one_measure(table: &Reader, layout: &Chosen<Layout>) -> Result<()> {
+    match layout.values.maybe("spacing") {
+        Some(spacing) if table.has(PER_DIRECTION.name) => {
+            let what = format!("the points of layout \"{}\" have the `spacing` {spacing} m already", layout.name());
+            Err(table.wrong(PER_DIRECTION.name, what, "remove `per_direction`, or `spacing`"))
+        }
+        _ => Ok(()),
+    }
 }

@@ -67,10 +67,10 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         scheme,
         start,
         end,
-        outputs: super::outputs::outputs(output_tables, &materials, start, degree)?,
+        outputs: super::outputs::outputs(output_tables, &materials, [start, end], degree)?,
         materials,
         watch: watch(watch_table.as_mut())?,
-        regrids: super::regrid::regrids(regrid_tables, degree)?,
+        regrids: super::regrid::regrids(regrid_tables, [start, end], degree)?,
         origin: Origin::default(),
     };
     Ok(Scene { origin, ..scene })
@@ -165,16 +165,13 @@ fn initial(table: Option<&mut Reader>, cloud: &Cloud) -> Result<Initial> {
     };
     let Some(table) = table else { return Ok(initial) };
     if let Some(path) = table.text("snapshot")? {
-        if let Some(other) = ["velocity", "deformation", "from"].into_iter().find(|key| table.has(key)) {
-            let what = format!("[initial] has both `snapshot` and `{other}`");
-            return Err(table.wrong(other, what, "keep one: a snapshot holds the whole state"));
-        }
+        alone(table, "snapshot", "keep one: a snapshot holds the whole state")?;
         table.finish()?;
         return Ok(Initial { snapshot: Some(PathBuf::from(path)), ..initial });
     }
     initial.from_cloud = table.values(&[tables::FROM])?.has("from");
     if initial.from_cloud {
-        table.of_kind("cloud");
+        alone(table, "from", "keep one: with `from` the whole state comes from the cloud file")?;
         if !cloud.layout.build().is_file() {
             let remedy = "give [cloud] layout = \"file\" and path, such as the points_*.vtu of an export";
             return Err(table.wrong("from", "the points of this scene come from no file", remedy));
@@ -198,6 +195,12 @@ fn initial(table: Option<&mut Reader>, cloud: &Cloud) -> Result<Initial> {
     }
     table.finish()?;
     Ok(initial)
+}
+
+/// Whether a key is the only one of `[initial]`.
+fn alone(table: &Reader, key: &str, remedy: &str) -> Result<()> {
+    let other = tables::INITIAL.iter().map(|other| other.name).find(|other| *other != key && table.has(other));
+    other.map_or(Ok(()), |other| Err(table.wrong(other, format!("[initial] has both `{key}` and `{other}`"), remedy)))
 }
 
 /// Initial values are values at t = 0.

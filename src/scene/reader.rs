@@ -259,6 +259,17 @@ impl<'a> Reader<'a> {
         self.wrong(key, format!("`{key}` is {}", describe(item.as_value())), format!("it must be {want}"))
     }
 
+    /// As [`Reader::not`], for whole numbers; one with a point is written without it.
+    pub(super) fn not_whole(&self, key: &str, want: &str, item: &Item) -> Error {
+        match item.as_float().filter(|x| x.fract() == 0.0 && x.abs() < 1e15) {
+            Some(x) => {
+                let what = format!("`{key}` is {x:?}, which has a decimal point");
+                self.wrong(key, what, format!("it must be {want}, written without a point, such as {x:.0}"))
+            }
+            None => self.not(key, want, item),
+        }
+    }
+
     fn not_entry(&self, key: &str, index: usize, want: &str, value: &Toml) -> Error {
         let what = format!("entry {index} of `{key}` is {}", describe(Some(value)));
         self.wrong_entry(key, index, what, format!("it must be {want}"))

@@ -45,7 +45,7 @@ fn all(page: &mut String) {
     head(page, "[exact]", about);
     keys(page, tables::EXACT);
     entries(page, "kind", &SOLUTIONS, |solution| match solution.laws {
-        [] => "; for laws without memory".to_owned(),
+        [] => "; for laws without internal variables".to_owned(),
         laws => format!("; only for law = {}", code(laws)),
     });
     let about = "One for each group of edges on the boundary. A group with edges inside of the body, or with none, needs no entry.";

@@ -1,9 +1,9 @@
 //! `[[regrid]]`: when a run gets another grid, and which.
 
 use super::When;
-use super::outputs::when;
 use super::reader::Reader;
-use super::tables::{CRITERIA, EXACT_TIMES, REGRID};
+use super::tables::{CRITERIA, REGRID};
+use super::times::{self, Times};
 use crate::error::Result;
 use crate::registry::grids::Grid;
 use crate::registry::{Chosen, GRIDS, Policy, Values};
@@ -50,17 +50,13 @@ impl Criteria {
 /// Steps between two looks at the criteria, where no times are given.
 const LOOK: usize = 10;
 
-/// Reads every `[[regrid]]`.
-pub(super) fn regrids(tables: Vec<Reader>, degree: usize) -> Result<Vec<Regrid>> {
-    tables.into_iter().map(|mut table| regrid(&mut table, degree)).collect()
+/// Reads every `[[regrid]]`, in a run from `span[0]` to `span[1]`.
+pub(super) fn regrids(tables: Vec<Reader>, span: [f64; 2], degree: usize) -> Result<Vec<Regrid>> {
+    tables.into_iter().map(|mut table| regrid(&mut table, span, degree)).collect()
 }
 
-fn regrid(table: &mut Reader, degree: usize) -> Result<Regrid> {
-    let times = when(table)?;
-    let exact_times = match times {
-        Some(When::At(_) | When::Every(_)) => table.boolean(EXACT_TIMES.name)?.unwrap_or(false),
-        _ => false,
-    };
+fn regrid(table: &mut Reader, span: [f64; 2], degree: usize) -> Result<Regrid> {
+    let Times { when: times, exact: exact_times } = times::read(table, span)?;
     let [when, points] = REGRID.each_ref().map(std::slice::from_ref);
     let criteria = match table.table(when[0].name)? {
         Some(mut table) => Some(criteria(&mut table)?),

@@ -2,14 +2,32 @@
 
 use toml_edit::{ArrayOfTables, DocumentMut, InlineTable, Item, Key, Table, Value};
 
+use super::tables::WHEN;
 use crate::error::{Error, Place, Result};
+use crate::registry::GRIDS;
 
-/// Keys of which a table has at most one: setting one removes the others.
-const EXCLUSIVE: &[(&str, &[&str])] =
-    &[("scheme", &["cfl", "safety"]), ("mesh", &["file", "rectangle"]), ("output", &["at", "every", "every_steps"])];
+/// An override that was applied: its key path, and the argument of `--set`.
+type Applied = (Vec<String>, String);
 
-/// Applies `key.path=value` to a document; answers the path.
-pub(super) fn apply(document: &mut DocumentMut, argument: &str) -> Result<Vec<String>> {
+/// Lists of keys, of which a table has at most one: setting one removes the others.
+fn exclusive(table: &str) -> Vec<Vec<&'static str>> {
+    let times = || WHEN.iter().map(|key| key.name).collect();
+    match table {
+        "scheme" => vec![vec!["cfl", "safety"]],
+        "mesh" => vec![vec!["file", "rectangle"]],
+        "cloud" | "material" => vec![vec!["per_direction", "spacing"]],
+        "output" => vec![times()],
+        "regrid" => vec![times(), GRIDS.names()],
+        _ => vec![],
+    }
+}
+
+/// Applies `key.path=value` to a document, after others; answers the path, and the keys of the file that gave way to it.
+pub(super) fn apply(
+    document: &mut DocumentMut,
+    argument: &str,
+    before: &[Applied],
+) -> Result<(Vec<String>, Vec<String>)> {
     let wrong = |what: String, remedy: &str| Error::at(place(argument), what, remedy);
     let form = "write --set key.path=value, as in scheme.degree=3 or boundary.0.kind=free";
     let (left, right) = argument.split_once('=').ok_or_else(|| wrong("there is no `=`".to_owned(), form))?;
@@ -17,7 +35,7 @@ pub(super) fn apply(document: &mut DocumentMut, argument: &str) -> Result<Vec<St
     let path: Vec<String> = keys.iter().map(|key| key.get().to_owned()).collect();
     let Some((last, parents)) = path.split_last() else { return Err(wrong("the key path is empty".to_owned(), form)) };
     let mut item = document.as_item_mut();
-    remove_rivals(item, &path);
+    let removed = remove_rivals(item, &path, argument, before)?;
     for (depth, key) in parents.iter().enumerate() {
         let next_is_index = path[depth + 1].parse::<usize>().is_ok();
         let no_place = missing(item, &path, depth, argument);
@@ -29,7 +47,7 @@ pub(super) fn apply(document: &mut DocumentMut, argument: &str) -> Result<Vec<St
     if !put(item, last, value) {
         return Err(missing(item, &path, parents.len(), argument));
     }
-    Ok(path)
+    Ok((path, removed))
 }
 
 /// The place of errors that an override causes.
@@ -115,22 +133,39 @@ fn put_table(tables: &mut ArrayOfTables, index: usize, value: Value) -> bool {
     true
 }
 
-fn remove_rivals(root: &mut Item, path: &[String]) {
-    let Some((section, others)) = EXCLUSIVE.iter().find(|(section, _)| path.first().is_some_and(|key| key == section))
-    else {
-        return;
-    };
-    let depth = if *section == "output" { 2 } else { 1 };
-    let Some(key) = path.get(depth).filter(|key| others.contains(&key.as_str())) else { return };
-    let mut table = root.get_mut(*section);
+/// Removes the keys that exclude the key of a path; answers their paths.
+///
+/// # Errors
+/// A key that another override gives.
+fn remove_rivals(root: &mut Item, path: &[String], argument: &str, before: &[Applied]) -> Result<Vec<String>> {
+    let Some(section) = path.first() else { return Ok(vec![]) };
+    let depth = if root.get(section).is_some_and(|item| !item.is_table_like()) { 2 } else { 1 };
+    let Some(key) = path.get(depth) else { return Ok(vec![]) };
+    let mut table = root.get_mut(section);
     if depth == 2 {
-        table = table.and_then(|list| list.get_mut(path[1].parse::<usize>().ok()?));
+        table = table.and_then(|list| match path[1].parse::<usize>() {
+            Ok(entry) => list.get_mut(entry),
+            Err(_) => None,
+        });
     }
-    if let Some(table) = table.and_then(Item::as_table_like_mut) {
-        for rival in others.iter().filter(|rival| *rival != key) {
-            table.remove(rival);
+    let Some(table) = table.and_then(Item::as_table_like_mut) else { return Ok(vec![]) };
+    let groups = exclusive(section).into_iter().filter(|keys| keys.contains(&key.as_str()));
+    let rivals = groups.flatten().filter(|rival| rival != key).filter(|rival| table.contains_key(rival));
+    let mut removed = Vec::new();
+    for rival in rivals.collect::<Vec<_>>() {
+        let mut other = path[..depth].to_vec();
+        other.push(rival.to_owned());
+        let gives = |(set, _): &&Applied| set.iter().zip(&other).all(|(a, b)| a == b);
+        if let Some((_, first)) = before.iter().rev().find(gives) {
+            let what =
+                format!("`{}` and `{}` exclude each other, and --set gives both", other.join("."), path.join("."));
+            let remedy = format!("leave out this --set, or --set {first}");
+            return Err(Error::at(place(argument), what, remedy));
         }
+        table.remove(rival);
+        removed.push(other.join("."));
     }
+    Ok(removed)
 }
 
 /// The error of a path whose key `depth` has no place in `item`.

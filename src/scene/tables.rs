@@ -43,7 +43,7 @@ pub(super) const MESH: &[Parameter] = &[
 
 pub(super) const HISTORIES: Parameter = key(
     "histories",
-    "where laws with memory keep P and their internal variables; at the points their flow makes energy (for studies)",
+    "where laws with internal variables keep these and P; at the points their flow makes energy (for studies)",
     "",
     Form::Name(|| of(Histories::NAMES), &[]),
     Preset::Absent("`\"nodes\"`"),
@@ -62,7 +62,7 @@ pub(super) const LAYOUT: Parameter = key(
     "where the points stand",
     "",
     Form::Name(|| LAYOUTS.names(), &[]),
-    Preset::Absent("`\"paper\"`; from degree 3 on `\"midpoints\"`; for laws with memory `\"gauss\"`"),
+    Preset::Absent("`\"paper\"`; from degree 3 on `\"midpoints\"`; for laws with internal variables `\"gauss\"`"),
 );
 
 pub(super) const LIMITS: [Parameter; 2] = [

@@ -152,8 +152,8 @@ fn sets_replace_rivals_and_grow_lists() {
     assert_eq!(scene.mesh, Mesh::Rectangle { size: [3.0, 1.0], cells: [5, 7] });
     let scene = parse(MINIMAL, &["mesh.file=b.msh"]).unwrap();
     assert_eq!(scene.mesh, Mesh::File("b.msh".into()));
-    let sets = ["output.0.kind=ledger", "output.1.kind=fields", "output.1.at=[1e-4]", "output.1.every_steps=5"];
-    let scene = parse(MINIMAL, &sets).unwrap();
+    let sets = ["output.0.kind=ledger", "output.1.kind=fields", "output.1.at=[1e-4]"];
+    let scene = parse(&parse(MINIMAL, &sets).unwrap().to_toml(), &["output.1.every_steps=5"]).unwrap();
     assert_eq!(scene.outputs[1].when, When::EverySteps(5));
     let scene = parse(MINIMAL, &["curl.control=off", "cloud={layout=\"gauss\"}"]).unwrap();
     assert_eq!((control(&scene), scene.cloud.layout), (("off", None), plain(&LAYOUTS, "gauss")));
@@ -167,6 +167,28 @@ fn sets_replace_rivals_and_grow_lists() {
     let with_table = format!("{MINIMAL}[cloud]\nlayout = \"paper\" # where\n[curl]\ncontrol = \"lcf\"\n");
     let scene = parse(&with_table, &["cloud={layout=\"gauss\"}", "curl.alpha=5"]).unwrap();
     assert_eq!((control(&scene), scene.cloud.layout), (("lcf", Some(5.0)), plain(&LAYOUTS, "gauss")));
+}
+
+#[test]
+fn a_set_that_replaces_another_key_says_so_and_two_sets_that_exclude_each_other_are_refused() {
+    let with_times = format!("{MINIMAL}[[output]]\nkind = \"fields\"\nat = [0.0]\n");
+    let of_file = with_times.replace("degree = 2", "degree = 2\ncfl = 0.4");
+    let warnings = |set: &str| parse(&of_file, &[set]).unwrap().warnings();
+    let words = "takes the place of";
+    let found = warnings("scheme.safety=0.8");
+    assert_eq!(found, [format!("--set scheme.safety=0.8: {words} `scheme.cfl` in the scene file")]);
+    assert!(warnings("output.0.every=1e-3")[0].ends_with(&format!("{words} `output.0.at` in the scene file")));
+    for (sets, keys) in [
+        (["scheme.cfl=0.4", "scheme.safety=0.8"], "`scheme.cfl` and `scheme.safety` exclude each other"),
+        (["output.0.at=[1e-4]", "output.0.every_steps=5"], "`output.0.at` and `output.0.every_steps`"),
+        (["output.0={kind=\"fields\",every=1e-4}", "output.0.every_steps=5"], "`output.0.every` and"),
+        (["regrid=[{at=[1e-4],refine=2}]", "regrid.0.coarsen=2"], "`regrid.0.refine` and `regrid.0.coarsen`"),
+    ] {
+        let found = message(&with_times, &sets);
+        let remedy = format!("leave out this --set, or --set {}", sets[0]);
+        assert!(found.starts_with(&format!("--set {}: ", sets[1])) && found.contains(keys), "{found}");
+        assert!(found.contains(&remedy), "{found}");
+    }
 }
 
 #[test]

@@ -8,6 +8,7 @@ use super::norms;
 use super::operator::Rate;
 use super::{Problem, Setup};
 use crate::error::{Error, Result};
+use crate::format::count;
 use crate::scene::Scene;
 
 /// A step is stable if its spectral radius is at most 1 and this, by degree: twice what ADER of degree 4, 5, 6 grows by at
@@ -102,7 +103,8 @@ pub fn measure(setup: &Setup, questions: Questions) -> Result<Measured> {
     let unknowns = cells * problem.per_cell();
     if unknowns > MOST_UNKNOWNS {
         let most = MOST_UNKNOWNS / problem.per_cell();
-        let what = format!("{cells} cells of {} unknowns; at most {most} at this degree", problem.per_cell());
+        let what =
+            format!("{} of {} unknowns; at most {most} at this degree", count(cells, "cell"), problem.per_cell());
         return Err(Error::input(
             what,
             "give a coarser or shorter body (eigenvalues of a full matrix), or a lower degree",

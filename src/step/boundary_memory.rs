@@ -2,6 +2,7 @@
 //! has any.
 
 use super::Scheme;
+use super::history::between;
 use crate::boundary::Boundary;
 use crate::lane::LANES;
 use crate::mesh::{FACES, map};
@@ -52,10 +53,7 @@ impl BoundaryMemory {
     /// Where those of a block lie.
     #[inline]
     pub fn range(&self, block: usize) -> Range<usize> {
-        match self.first.get(block..block + 2) {
-            Some(&[from, to]) => from..to,
-            _ => 0..0,
-        }
+        between(&self.first, block)
     }
 
     /// Those of a point among the numbers of its block.

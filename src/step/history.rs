@@ -56,10 +56,7 @@ impl Histories {
     /// Where those of a block lie; nowhere for an elastic one.
     #[inline]
     pub fn range(&self, block: usize) -> Range<usize> {
-        match self.first.get(block..block + 2) {
-            Some(&[from, to]) => from..to,
-            _ => 0..0,
-        }
+        between(&self.first, block)
     }
 
     /// Those of a block, none for an elastic one.
@@ -73,10 +70,17 @@ impl Histories {
     /// are of either sign where the points lie far from the nodes.
     #[inline]
     pub(super) fn weights(&self, block: usize) -> &[F8] {
-        match self.first_point.get(block..block + 2) {
-            Some(&[from, to]) => &self.weights[from..to],
-            _ => &[],
-        }
+        &self.weights[between(&self.first_point, block)]
+    }
+}
+
+/// What belongs to a block, where the beginnings of all blocks and the end of the last are known; nothing where the list is
+/// empty.
+#[inline]
+pub(super) fn between(first: &[usize], block: usize) -> Range<usize> {
+    match first.get(block..block + 2) {
+        Some(&[from, to]) => from..to,
+        _ => 0..0,
     }
 }
 

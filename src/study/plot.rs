@@ -2,9 +2,9 @@
 
 use super::case::Series;
 use super::record::Record;
-use crate::chart::{Chart, Line, Marker, Scale, Stroke, save};
+use crate::chart::{Chart, Line, Scale, save};
 use crate::error::{Error, Result};
-use crate::registry::Method;
+use crate::registry::methods::Build;
 use std::path::Path;
 
 /// The abscissa.
@@ -54,19 +54,10 @@ fn lines(records: &[Record], axis: Axis) -> Vec<Line> {
         }
     }
     let line = |series: &Series| {
-        let (marker, stroke) = look(series.method);
+        let Build { marker, stroke, .. } = *series.method.build();
         Line { name: series.name(), colour: series.degree, marker, stroke, points: points(records, series, axis) }
     };
     all.into_iter().map(line).filter(|line| !line.points.is_empty()).collect()
-}
-
-/// How the lines of a method look.
-fn look(method: Method) -> (Marker, Stroke) {
-    match method {
-        Method::AderDgmpm => (Marker::Square, Stroke::Full),
-        Method::AderDgfem => (Marker::Triangle, Stroke::Dashed),
-        Method::RkDgfem => (Marker::Circle, Stroke::Dotted),
-    }
 }
 
 /// Records of a series that can stand in a plot, from coarse to fine.

@@ -1,7 +1,7 @@
 //! What a study says on the terminal.
 
 use super::record::Record;
-use crate::format::short_seconds;
+use crate::format::{count, short_seconds};
 
 /// The head of the rows of [`line`].
 pub fn title() -> String {
@@ -24,13 +24,10 @@ pub fn line(r: &Record) -> String {
 
 /// `for an error of 1 % use rk-dgfem S3 on 60 cells: 180.2 ms (error 6.31e-3)`.
 pub fn answer(error: f64, record: &Record) -> String {
-    let (name, cells) = (record.case.series.name(), record.cells);
+    let (name, cells) = (record.case.series.name(), count(record.cells, "cell"));
     let found = record.error().unwrap_or(f64::NAN);
     let error = percent(error);
-    format!(
-        "  for an error of {error:<8} use {name} on {cells} cells: {} (error {found:.2e})",
-        short_seconds(record.cpu)
-    )
+    format!("  for an error of {error:<8} use {name} on {cells}: {} (error {found:.2e})", short_seconds(record.cpu))
 }
 
 /// 1 %, 0.01 %; below that as a power of ten.

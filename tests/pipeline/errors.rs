@@ -22,6 +22,23 @@ fn bad_scenes_are_named_by_file_line_and_column() {
         ),
         ("velocity = [\"-200\", \"0\"]", "deformation = [\"x-0.5\", 0, 0, 1]", "11:15: the initial deformation", "> 0"),
         ("[mesh]", "[mesh", "2:6: this is not TOML", ""),
+        // Files that are not there, at the key that names them.
+        (
+            "rectangle = { size = [1.0, 0.5], cells = [4, 2] }",
+            "file = \"none.msh\"",
+            "3:8: there is no file none.msh",
+            "relative to the scene file",
+        ),
+        ("[[material]]", "[cloud]\npath = \"none.csv\"\n[[material]]", "5:8: there is no file none.csv", "relative"),
+        ("velocity = [\"-200\", \"0\"]", "snapshot = \"none.h5\"", "11:12: there is no file none.h5", "relative"),
+        (
+            "[time]",
+            "[[regrid]]\nat = [0.0]\nmesh = \"none.msh\"\n[time]",
+            "29:8: there is no file none.msh",
+            "relative",
+        ),
+        // More cells than any memory holds.
+        ("cells = [4, 2]", "cells = [100000, 100000]", "3:42: 10000000000 cells of degree 1 need about", "fewer cells"),
     ];
     for (old, new, begins, remedy) in table {
         assert!(SCENE.contains(old), "{old}");
@@ -30,6 +47,8 @@ fn bad_scenes_are_named_by_file_line_and_column() {
         assert!(message.starts_with(&format!("error: case.toml:{begins}")), "{new}: {message}");
         assert!(message.contains(remedy), "{new}: {message}");
         assert!(!bench.path("runs/case/summary.json").exists());
+        // What is wrong is found before matrices are built and written.
+        assert!(!bench.path("runs/case/operators.h5").exists(), "{new}");
     }
 }
 
@@ -49,6 +68,22 @@ fn a_state_that_is_sick_only_between_its_nodes_is_bad_input_too() {
     )
     .unwrap();
     assert!(message.contains("the initial state is lost: J = ") && message.contains("at material point"), "{message}");
+}
+
+#[test]
+fn faults_that_show_in_mid_run_are_named_by_their_key() {
+    let bench = Bench::new();
+    // Infinite at t = 0, and at no time at which the predictor asks for it.
+    let message = bench.fail(2, "run case.toml --set boundary.0.speed=1/t");
+    assert!(message.starts_with("error: --set boundary.0.speed=1/t: step 1, t = "), "{message}");
+    assert!(message.contains("the speed of the wall `left` `1/t` is inf at X = "), "{message}");
+    let grid = "[[regrid]]\nat = [5e-5]\nrectangle = { size = [1.1, 0.5], cells = [4, 2] }\n[time]";
+    bench.write("case.toml", SCENE.replace("[time]", grid));
+    let message = bench.fail(2, "run case.toml --force");
+    assert!(message.starts_with("error: case.toml:29:13: regrid at step "), "{message}");
+    assert!(message.contains("not a grid of the same body") && message.contains("cover 0.000e0 m^2"), "{message}");
+    let message = bench.fail(2, "run case.toml --force --set regrid.0.rectangle.cells=[100000,100000]");
+    assert!(message.contains("regrid at step ") && message.contains("10000000000 cells of degree 1 need"), "{message}");
 }
 
 #[test]

@@ -146,6 +146,10 @@ fn numbers_that_look_like_other_units_are_named_with_the_unit_that_is_meant() {
     let info = bench.run("mesh rectangle --size 1500,1 --cells 4,2 --out long.h5");
     assert!(info.contains("note: the body is 1.5e3 m x 1e0 m large"), "{info}");
     assert!(bench.run("mesh info long.h5").contains("note: the body"));
+    expect(
+        "--set output=[{kind=\"ledger\",every=1e-7}]",
+        &["note: `every` of output \"ledger\" is 1e-7 s, shorter than a step of 6.38"],
+    );
     // At the limits of what is usual nothing is said.
     assert!(!said("").contains("note: "));
     assert!(!said("--set mesh.rectangle.size=[1000,500] --set time.end=1e-1").contains("note: "));

@@ -1,10 +1,17 @@
-//! Cells of a grid of lines joined.
+//! Cells cut, and cells of a grid of lines joined.
 
 use super::lines::grid_of_lines;
 use super::{Rule, Values};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::regrid::TensorGrid;
+
+/// Each cell of a mesh cut into k x k.
+pub(super) fn finer(of: &Values, rule: &dyn Rule, mesh: &Mesh) -> Result<Mesh> {
+    let k = of.integer("refine");
+    rule.has_room("refine", mesh.cells.len().saturating_mul(k * k))?;
+    Ok(mesh.refined(k))
+}
 
 /// k x k cells of a mesh joined into one.
 pub(super) fn coarser(of: &Values, rule: &dyn Rule, mesh: &Mesh) -> Result<Mesh> {

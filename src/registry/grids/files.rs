@@ -42,7 +42,12 @@ pub(super) fn make(of: &Values, rule: &dyn Rule, count: usize, _: &Present) -> R
 
 pub(super) fn check(of: &Values, rule: &dyn Rule, _: &Mesh) -> Result<()> {
     for file in of.texts("mesh") {
-        let mesh = read_mesh(&rule.resolve(file))?;
+        let path = rule.resolve(file);
+        if !path.exists() {
+            let what = format!("there is no file {}", path.display());
+            return Err(rule.wrong("mesh", what, "give the path of a file, relative to the scene file"));
+        }
+        let mesh = read_mesh(&path)?;
         let here = |why: Error| {
             rule.wrong("mesh", format!("{file}: {why}"), "give meshes of the same body with the same groups")
         };

@@ -59,6 +59,11 @@ pub trait Rule {
     /// # Errors
     /// A group that it lacks.
     fn accepts(&self, mesh: &Mesh) -> Result<()>;
+    /// Whether a grid of so many cells has room in the memory; one of its keys asks for it.
+    ///
+    /// # Errors
+    /// It has none.
+    fn has_room(&self, key: &str, cells: usize) -> Result<()>;
     /// An error at the value of one of its keys.
     fn wrong(&self, key: &str, what: String, remedy: &str) -> Error;
 }
@@ -94,21 +99,21 @@ pub static GRIDS: Table<Grid> = Table::new(&[
         about: "a rectangle of equal cells",
         parameters: &[Parameter::required("rectangle", "the rectangle", "", Form::Table(RECTANGLE))],
         check: ANY,
-        build: by(|of, _, count, _| rectangles::make(of.tables("rectangle"), count)),
+        build: by(|of, rule, count, _| rectangles::make(of, "rectangle", rule, count)),
     },
     Entry {
         name: "rectangles",
         about: "rectangles that are used one after the other",
         parameters: &[Parameter::required("rectangles", "the rectangles", "", Form::Tables(RECTANGLE))],
         check: ANY,
-        build: by(|of, _, count, _| rectangles::make(of.tables("rectangles"), count)),
+        build: by(|of, rule, count, _| rectangles::make(of, "rectangles", rule, count)),
     },
     Entry {
         name: "refine",
         about: "each cell of the present mesh becomes k x k cells",
         parameters: &[Parameter::required("refine", "k", "", FACTOR)],
         check: ANY,
-        build: Grid { repeats: true, ..by(|of, _, _, present| Ok(present.view.mesh.refined(of.integer("refine")))) },
+        build: Grid { repeats: true, ..by(|of, rule, _, present| cells::finer(of, rule, present.view.mesh)) },
     },
     Entry {
         name: "coarsen",

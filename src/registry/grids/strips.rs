@@ -51,15 +51,17 @@ pub(super) fn fit(of: &Values) -> std::result::Result<(), Fault> {
 }
 
 pub(super) fn make(of: &Values, rule: &dyn Rule, _: usize, present: &Present) -> Result<Mesh> {
-    with_strips(of.tables("strips"), rule, present).map_err(|what| {
-        rule.wrong("strips", what, "strips need a mesh of the scene that is a grid of lines, of one group")
-    })
+    let wrong =
+        |what| rule.wrong("strips", what, "strips need a mesh of the scene that is a grid of lines, of one group");
+    let base = rule.base()?;
+    let lines = with_strips(&base, of.tables("strips"), present).map_err(wrong)?;
+    rule.has_room("strips", (lines[0].len() - 1).saturating_mul(lines[1].len() - 1))?;
+    grid_of_lines(&base, lines).map_err(wrong)
 }
 
-/// The scene's own mesh with finer strips. Lines of it stay, so that most cells are those of the last grid.
-fn with_strips(strips: &[Values], rule: &dyn Rule, present: &Present) -> std::result::Result<Mesh, String> {
-    let base = rule.base().map_err(|why| why.to_string())?;
-    let mut lines = TensorGrid::of(&base).ok_or("the mesh of the scene is not a grid of lines")?.lines;
+/// The lines of the scene's own mesh with finer strips. Its lines stay, so that most cells are those of the last grid.
+fn with_strips(base: &Mesh, strips: &[Values], present: &Present) -> std::result::Result<[Vec<f64>; 2], String> {
+    let mut lines = TensorGrid::of(base).ok_or("the mesh of the scene is not a grid of lines")?.lines;
     for strip in strips {
         let axis = usize::from(strip.text("axis") == AXES[1]);
         let (low, high) = match strip.expression("around") {
@@ -76,7 +78,7 @@ fn with_strips(strips: &[Values], rule: &dyn Rule, present: &Present) -> std::re
         let within = [low - strip.number("behind"), high + strip.number("ahead")];
         lines[axis] = finer(&lines[axis], within, strip.integer("factor"));
     }
-    grid_of_lines(&base, lines)
+    Ok(lines)
 }
 
 /// Lines with intervals that meet the open interval `within` cut into `factor` equal ones.
