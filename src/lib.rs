@@ -29,8 +29,9 @@
 //!    relaxed, at a rate tied to compression. Without it the discrete system is unstable there, whatever dt (not in the
 //!    paper; `docs/method.md`).
 //!
-//! [`step::Motion`] goes from step to step. What a scheme lists as [`step::Correction`]s, limiters and dampings, changes the
-//! new state after a step.
+//! [`step::Motion`] goes from step to step. What a scheme lists as [`step::Correction`]s, such as a [`limiter`] (step 3(c) of the
+//! paper), changes the new state after a step. Where a scheme has a [`step::Rescue`], cells that a step loses are stepped again at
+//! order 0.
 //!
 //! ADER-DGFEM has its points at the nodes (chi = Phi); RK-DGFEM replaces 1 to 3 by Runge-Kutta stages. Grid unknowns are
 //! the master copy between steps; internal variables live at the points and are never projected. The step size follows
@@ -63,7 +64,7 @@
 //!
 //! Data flows mesh, cloud, operators, state, step, output. The order of the modules below is the order of dependency: a
 //! module uses only those above it (`tests/layers.rs` holds this). [`Scheme`] is read-only, [`State`] is all that changes.
-//! A new law, flux, boundary condition, source, solution, output, grid or layout is one file and one entry of [`registry`]
+//! A new law, flux, boundary condition, source, solution, output, grid, layout or limiter is one file and one entry of [`registry`]
 //! (`docs/extend.md`). The modules are private: what a user needs stands on the page of `pub use` below.
 
 #![deny(missing_docs)]
@@ -121,7 +122,7 @@ pub use step::{Control, Loss, Method, Motion, Relax, Scheme, Survey, Sweeps, Tab
 // What a crate may add: laws, fluxes, conditions, sources, corrections, observers.
 pub use boundary::{Absorbing, Boundary, Data, FacePoint, Free, Moment, TimeNode, Traction, Velocity, Wall};
 pub use lane::{F8, Kernel, LANES, Lane, Lanes};
-pub use limiter::{Limiter, MomentLimiter, Sensor, VertexLimiter};
+pub use limiter::{Beside, Cell, CellLimiter, Limiter, Modes, MomentLimiter, Sensor, VertexLimiter};
 pub use material::{
     J2, LinearElastic, Material, NeoHookean, Numbers, Past, PointLaw, Rank, Response, StVenantKirchhoff, Variable,
 };

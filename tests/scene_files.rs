@@ -91,7 +91,11 @@ const BAD: &[Row] = &[
     ),
     ("value = [\"0\", \"1e6*t\"]\n", "", 23, 1, &["needs the key `value`", "Pa"]),
     ("[time]", "impedance = \"exact\"\n[time]", 36, 1, &["`impedance` is not built yet"]),
-    ("[time]", "[limiter]\n[time]", 36, 2, &["`limiter` is not built yet"]),
+    ("[time]", "[checkpoint]\n[time]", 36, 2, &["`checkpoint` is not built yet"]),
+    ("[time]", "[limiter]\nkind = \"momnt\"\n[time]", 37, 8, &["momnt", "did you mean", "moment"]),
+    ("[time]", "[limiter]\nkind = \"moment\"\nbeta = 3\n[time]", 38, 8, &["`beta` is 3", "from 1 to 2"]),
+    ("[time]", "[limiter]\nkind = \"vertex\"\nbeta = 2\n[time]", 38, 1, &["unknown key `beta`", "threshold"]),
+    ("[time]", "[limiter]\nkind = \"off\"\nrescue = 1\n[time]", 38, 10, &["`rescue` is 1", "true or false"]),
     // types
     ("degree = 2", "degree = \"two\"", 34, 10, &["`degree` is the text \"two\"", "whole number from 0 to 6"]),
     ("degree = 2", "degree = 2.5", 34, 10, &["`degree` is 2.5", "whole number"]),

@@ -5,6 +5,8 @@
 //!
 //! For ADER a limiter acts after the corrector and the control of the curl, for Runge-Kutta after each stage. Rotations of a cell that
 //! it leaves behind are for the control of the curl of the next step.
+//!
+//! A new limiter is one file with a type that implements [`CellLimiter`] and its entry in the registry.
 
 mod cell;
 mod modes;
@@ -14,6 +16,8 @@ mod sensor;
 mod vertex;
 mod waves;
 
+pub use cell::{Beside, Cell};
+pub use modes::Modes;
 pub use moment::MomentLimiter;
 pub use sensor::Sensor;
 pub use vertex::VertexLimiter;
@@ -22,8 +26,7 @@ use crate::lane::{F8, LANES};
 use crate::operators::Operators;
 use crate::state::UNKNOWNS;
 use crate::step::{Corrected, Correction, Made, Notes, Scheme};
-use cell::Cell;
-use modes::{Legendre, Modes};
+use modes::Legendre;
 
 /// Limits one cell.
 pub trait CellLimiter: Send + Sync + 'static {

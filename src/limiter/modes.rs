@@ -60,10 +60,10 @@ impl Modes {
 #[derive(Debug, Clone)]
 pub struct Legendre {
     m: usize,
+    /// w_a l_i(x_a): `[a][i]`.
+    forward: Vec<f64>,
     /// l_i(x_a): `[i][a]`.
-    values: Vec<f64>,
-    /// w_a.
-    weights: Vec<f64>,
+    back: Vec<f64>,
 }
 
 impl Legendre {
@@ -71,13 +71,14 @@ impl Legendre {
     pub fn new(degree: usize) -> Self {
         let basis = Lagrange::new(degree);
         let m = basis.len();
-        let mut values = vec![0.0; m * m];
+        let (mut forward, mut back) = (vec![0.0; m * m], vec![0.0; m * m]);
         for (a, x) in basis.nodes.iter().enumerate() {
             for (i, (p, _)) in legendre(2.0 * x - 1.0).take(m).enumerate() {
-                values[i * m + a] = ((2 * i + 1) as f64).sqrt() * p;
+                let value = ((2 * i + 1) as f64).sqrt() * p;
+                (back[i * m + a], forward[a * m + i]) = (value, basis.weights[a] * value);
             }
         }
-        Self { m, values, weights: basis.weights.clone() }
+        Self { m, forward, back }
     }
 
     /// M = N + 1.
@@ -92,27 +93,32 @@ impl Legendre {
 
     /// The modes of a component from its values at the nodes; the quadrature of the nodes is exact for them.
     pub fn modes(&self, nodes: impl Iterator<Item = f64>) -> Component {
-        let (m, mut values) = (self.m, [0.0; MOST_NODES]);
+        let mut values = [0.0; MOST_NODES];
         values.iter_mut().zip(nodes).for_each(|(out, value)| *out = value);
-        self.twice(&values, |i, a| self.values[i * m + a] * self.weights[a])
+        self.twice(&values, &self.forward)
     }
 
     /// The values of a component at the nodes.
     pub fn values(&self, modes: &Component) -> Component {
-        self.twice(modes, |a, i| self.values[i * self.m + a])
+        self.twice(modes, &self.back)
     }
 
-    /// sum_kl matrix(i, k) matrix(j, l) x_kl.
-    fn twice(&self, x: &Component, matrix: impl Fn(usize, usize) -> f64) -> Component {
+    /// sum_kl x_kl matrix_ki matrix_lj.
+    fn twice(&self, x: &Component, matrix: &[f64]) -> Component {
         let (m, mut half, mut out) = (self.m, [0.0; MOST_NODES], [0.0; MOST_NODES]);
-        for i in 0..m {
-            for l in 0..m {
-                half[i * m + l] = (0..m).map(|k| matrix(i, k) * x[k * m + l]).sum();
+        // Rows at a time, so that the inner loop runs over numbers that follow each other.
+        for k in 0..m {
+            for i in 0..m {
+                let factor = matrix[k * m + i];
+                let rows = half[i * m..(i + 1) * m].iter_mut().zip(&x[k * m..(k + 1) * m]);
+                rows.for_each(|(half, x)| *half += factor * x);
             }
         }
         for i in 0..m {
-            for j in 0..m {
-                out[i * m + j] = (0..m).map(|l| matrix(j, l) * half[i * m + l]).sum();
+            for l in 0..m {
+                let factor = half[i * m + l];
+                let rows = out[i * m..(i + 1) * m].iter_mut().zip(&matrix[l * m..(l + 1) * m]);
+                rows.for_each(|(out, matrix)| *out += factor * matrix);
             }
         }
         out

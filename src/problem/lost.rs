@@ -82,7 +82,16 @@ impl Case<'_> {
 
     /// What may help, the most likely first.
     fn hints(&self) -> Vec<String> {
-        let all = [self.step_size(), self.curl(), self.regrid(), self.energy(), self.points(), self.flux(), self.law()];
+        let all = [
+            self.step_size(),
+            self.limiter(),
+            self.curl(),
+            self.regrid(),
+            self.energy(),
+            self.points(),
+            self.flux(),
+            self.law(),
+        ];
         let mut out: Vec<String> = all.into_iter().flatten().collect();
         out.push(self.crushed().to_owned());
         out
@@ -95,6 +104,14 @@ impl Case<'_> {
         // A share that is written as a cfl number is rounded.
         (safety > SAFETY + 1e-9).then(|| {
             format!("the step is {safety:.2} of the limit, which is that of small waves: give scheme.safety = {SAFETY}")
+        })
+    }
+
+    fn limiter(&self) -> Option<String> {
+        let scheme = &self.problem.scheme;
+        (scheme.rescue.is_none()).then(|| {
+            "[limiter] kind = \"moment\" damps cells at shocks and corners, and steps lost cells again at order 0"
+                .to_owned()
         })
     }
 
