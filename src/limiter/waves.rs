@@ -16,6 +16,8 @@ pub struct Waves {
     n: [f64; 2],
     r: [[f64; 2]; 2],
     z: [f64; 2],
+    /// Whether the variables are (F, p).
+    apart: bool,
 }
 
 impl Waves {
@@ -31,11 +33,19 @@ impl Waves {
             let square = law.density() * b;
             if square > 0.0 && square.is_finite() { square.sqrt() } else { least.sqrt() }
         });
-        Self { n, r: [[cos, sin], [-sin, cos]], z }
+        Self { n, r: [[cos, sin], [-sin, cos]], z, apart: false }
+    }
+
+    /// (F, p) themselves.
+    pub fn apart() -> Self {
+        Self { n: [1.0, 0.0], r: [[1.0, 0.0], [0.0, 1.0]], z: [1.0; 2], apart: true }
     }
 
     /// Characteristic variables of (F, p).
     pub fn of(&self, u: [f64; UNKNOWNS]) -> [f64; UNKNOWNS] {
+        if self.apart {
+            return u;
+        }
         let [n1, n2] = self.n;
         let normal = [u[0] * n1 + u[1] * n2, u[2] * n1 + u[3] * n2];
         let [p, strain] = [[u[4], u[5]], normal].map(|x| self.r.map(|r| dot(r, x)));
@@ -45,6 +55,9 @@ impl Waves {
 
     /// (F, p) of characteristic variables.
     pub fn back(&self, w: [f64; UNKNOWNS]) -> [f64; UNKNOWNS] {
+        if self.apart {
+            return w;
+        }
         let [n1, n2] = self.n;
         let half = |k: usize| [0.5 * (w[2 * k] + w[2 * k + 1]), 0.5 * (w[2 * k] - w[2 * k + 1]) / self.z[k]];
         let (a, b) = (half(0), half(1));

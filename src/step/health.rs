@@ -133,7 +133,7 @@ impl Scheme {
     }
 
     /// Phi_a(xi_p) of one lane of a block; none where points are nodes.
-    fn points_from_nodes(&self, block: usize, lane: usize) -> Option<Matrix<f64>> {
+    pub(super) fn points_from_nodes(&self, block: usize, lane: usize) -> Option<Matrix<f64>> {
         if self.samples_at_nodes(block) {
             return None;
         }

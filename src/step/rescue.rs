@@ -163,6 +163,7 @@ impl Scheme {
         let mut loss = 0.0;
         for (block, &lanes) in memory.blocks.flat.iter().enumerate().filter(|(_, lanes)| **lanes != 0) {
             flatten(self, block, lanes, &mut start.u[stride * block..stride * (block + 1)]);
+            self.move_histories(block, lanes, (state, &mut start));
             if balance.is_some() {
                 let [before, after] = [state, &start].map(|state| self.energy_of_block(state, block, scratch));
                 let cells = 0..self.operators.blocks.count[block];
@@ -171,6 +172,37 @@ impl Scheme {
         }
         memory.loss[0] = loss;
         Some(start)
+    }
+}
+
+impl Scheme {
+    /// Moves the histories of lanes that have become constant, so that their elastic strain stays but for its volume: with the F of
+    /// the mean alone, what the points have flowed apart would turn into stress.
+    fn move_histories(&self, block: usize, lanes: u8, (state, start): (&State, &mut State)) {
+        let law = &self.laws[self.operators.blocks.material[block]];
+        let (count, n) = (law.history_len(), self.operators.nodes());
+        if count == 0 {
+            return;
+        }
+        let (first, unknowns) = (self.histories.range(block).start, block * state.components * n);
+        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+            let to = std::array::from_fn(|k| start.u[unknowns + k * n].0[lane]);
+            let points = self.points_from_nodes(block, lane);
+            let places = self.operators.points.as_ref().map_or(n, |points| points.count[block][lane] as usize);
+            for point in 0..places {
+                let from = std::array::from_fn(|k| {
+                    let number = |a: usize| state.u[unknowns + k * n + a].0[lane];
+                    points.as_ref().map_or_else(
+                        || number(point),
+                        |matrix| matrix.row(point).iter().enumerate().map(|(a, w)| w * number(a)).sum(),
+                    )
+                });
+                let mut history = self.internal_at(state, block, lane, point);
+                law.move_history(from, to, &mut history);
+                let out = &mut start.internal[first + count * point..][..count];
+                out.iter_mut().zip(history).for_each(|(out, value)| out.0[lane] = value);
+            }
+        }
     }
 }
 
