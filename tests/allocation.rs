@@ -90,12 +90,14 @@ impl Run {
 
 const PLASTIC: [&str; 3] = ["material.0.law=j2", "material.0.yield_stress=1e8", "material.0.hardening=1e10"];
 
-const CASES: [(&str, &[&str]); 5] = [
+const CASES: [(&str, &[&str]); 7] = [
     ("RK S2", &["scheme.method=rk-dgfem"]),
     ("ADER-DGMPM S2, lattice", &["scheme.method=ader-dgmpm", "cloud.layout=midpoints"]),
     ("ADER-DGMPM S2, jitter", &["scheme.method=ader-dgmpm", "cloud.layout=jitter"]),
     ("RK S2, J2", &["scheme.method=rk-dgfem", PLASTIC[0], PLASTIC[1], PLASTIC[2]]),
     ("ADER-DGMPM S2, J2", &["scheme.method=ader-dgmpm", PLASTIC[0], PLASTIC[1], PLASTIC[2]]),
+    ("ADER-DGMPM S2, all cells limited", &["scheme.method=ader-dgmpm", "limiter={kind=\"moment\",threshold=0}"]),
+    ("RK S2, sensor and vertex limiter", &["scheme.method=rk-dgfem", "limiter={kind=\"vertex\"}"]),
 ];
 
 /// Calls of the allocator by the one thread of a pool during `steps` steps.
