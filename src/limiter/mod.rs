@@ -2,7 +2,7 @@
 //!
 //! A [`Sensor`] marks the cells whose jumps are too large for a smooth solution; a [`CellLimiter`] cuts the modes of these cells back to
 //! what their neighbours allow. Other cells keep their bits. Where a law has internal variables, which stay at their points, the
-//! momentum alone is limited: another F with the plastic strain of the old one would be another elastic strain (a copper bar makes 10 % of
+//! momentum alone is limited: another F with the internal variables of the old one would be another elastic strain (a copper bar makes 10 % of
 //! its energy so).
 //!
 //! For ADER a limiter acts after the corrector and the control of the curl, for Runge-Kutta after each stage. Rotations of a cell that
