@@ -149,9 +149,9 @@ fn deviation(operators: &Operators, numbers: &[F8], stride: usize) -> f64 {
     let mean = sums.map(|sum| sum.iter().sum::<f64>() / area);
     let mut most = [0.0f64; LANES];
     for (numbers, &count) in numbers.chunks_exact(stride).zip(&operators.blocks.count) {
-        for lane in 0..count {
+        for (lane, most) in most.iter_mut().enumerate().take(count) {
             let square: f64 = mean.iter().zip(&numbers[MEANS..]).map(|(mean, own)| (own.0[lane] - mean).powi(2)).sum();
-            most[lane] = most[lane].max(square);
+            *most = most.max(square);
         }
     }
     most.iter().fold(0.0f64, |a, b| a.max(*b)).sqrt()
@@ -210,7 +210,7 @@ impl<const M: usize> Work for OfDegree<'_, M> {
             }
             for lane in 0..operators.blocks.count[block] {
                 // A jump that is no number is beyond, too.
-                lanes |= u8::from(!(squares.0[lane] <= most.0[lane])) << lane;
+                lanes |= u8::from(squares.0[lane].is_nan() || squares.0[lane] > most.0[lane]) << lane;
             }
         }
         lanes

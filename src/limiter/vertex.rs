@@ -27,9 +27,8 @@ impl CellLimiter for VertexLimiter {
             narrow(cell, &own, ends, &mut alpha);
         }
         for order in (1..top).rev() {
-            for k in 0..UNKNOWNS {
-                alpha[order][k] = alpha[order][k].max(alpha[order + 1][k]);
-            }
+            let above = alpha[order + 1];
+            alpha[order].iter_mut().zip(above).for_each(|(alpha, above)| *alpha = alpha.max(above));
         }
         let (mut out, mut changed) = (own.clone(), false);
         for i in 0..own.m {
@@ -70,15 +69,16 @@ fn narrow(cell: &Cell, own: &Modes, ends: [usize; 2], alpha: &mut [[f64; UNKNOWN
         for j in 0..m {
             let number = i * m + j;
             let scale = |i: usize, j: usize| derivative(i) * derivative(j);
-            for k in 0..UNKNOWNS {
-                let values = &own.of[k];
+            // The highest mode of all has no linear part.
+            let Some(alpha) = alpha.get_mut(i + j + 1) else { continue };
+            for (k, (alpha, values)) in alpha.iter_mut().zip(&own.of).enumerate() {
                 let one = if i + 1 < m { values[number + m] * scale(i + 1, j) * (ends[0] as f64 - 0.5) } else { 0.0 };
                 let two = if j + 1 < m { values[number + 1] * scale(i, j + 1) * (ends[1] as f64 - 0.5) } else { 0.0 };
                 let rise = one + two;
                 let far = if rise > 0.0 { high.of[k][number] } else { low.of[k][number] };
                 if rise != 0.0 {
                     let room = (far - values[number]) * scale(i, j) / rise;
-                    alpha[i + j + 1][k] = alpha[i + j + 1][k].min(room.clamp(0.0, 1.0));
+                    *alpha = alpha.min(room.clamp(0.0, 1.0));
                 }
             }
         }

@@ -251,8 +251,8 @@ impl<const M: usize> crate::lane::Work for OfDegree<'_, M> {
         Masses::<'_, M> { line, metric, masses: &mut *masses }.run::<L>();
         let at = |k: usize, a: usize| L::load(&u[k * n + a]);
         let (mut sum, mut area, mut smallest) = ([L::zero(); DEFORMATION], L::zero(), L::splat(f64::INFINITY));
-        for a in 0..n {
-            let mass = L::load(&masses[a]);
+        for (a, mass) in masses[..n].iter().enumerate() {
+            let mass = L::load(mass);
             let f = [at(0, a), at(1, a), at(2, a), at(3, a)];
             for k in 0..DEFORMATION {
                 sum[k] = mass.mul_add(f[k], sum[k]);
@@ -277,7 +277,7 @@ impl<const M: usize> crate::lane::Work for OfDegree<'_, M> {
         (smallest - L::splat(share) * mean).store(&mut margin);
         for (lane, margin) in margin.0.iter().enumerate() {
             // NaN is trouble, too.
-            lanes |= u8::from(!(*margin >= 0.0)) << lane;
+            lanes |= u8::from(margin.is_nan() || *margin < 0.0) << lane;
         }
         lanes
     }
