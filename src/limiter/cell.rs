@@ -48,10 +48,11 @@ impl Cell<'_> {
         [self.cofactor(1), self.cofactor(0)].map(|c| c[0].hypot(c[1]))
     }
 
-    /// Characteristic variables along the direction in which xi of an axis grows, at F. Where a law has internal variables, and F is
-    /// not limited, (F, p) themselves.
+    /// Characteristic variables along the direction in which xi of an axis grows, at F; of the momentum alone where a law has
+    /// internal variables, and F is not limited.
     pub fn waves(&self, axis: usize, f: [f64; 4]) -> Waves {
-        if self.law().has_memory() { Waves::apart() } else { Waves::new(self.law(), f, self.normal(axis)) }
+        let waves = Waves::new(self.law(), f, self.normal(axis));
+        if self.law().has_memory() { waves.of_momentum() } else { waves }
     }
 
     /// J grad xi of an axis in the middle, m.
