@@ -1,0 +1,55 @@
+//! docs/hard_cases.md.
+
+use super::{Outcome, Verdict};
+use std::fmt::Write;
+use std::path::Path;
+
+/// What stands above the tables.
+const HEAD: &str = include_str!("head.md");
+
+/// Writes the page.
+pub fn write(outcomes: &[Outcome]) {
+    let mut page = HEAD.to_owned();
+    missed(&mut page, outcomes);
+    let mut group = "";
+    for Outcome { case, verdicts, seconds } in outcomes {
+        if case.group != group {
+            group = case.group;
+            writeln!(page, "\n## {group}\n").unwrap();
+            page.push_str("| case | setting | criterion and result | seconds |\n|---|---|---|---|\n");
+        }
+        let settings: Vec<_> = std::iter::once(format!("`{}.toml`", case.scene))
+            .chain(case.sets.iter().map(|set| format!("`{}`", set.replace('|', "\\|"))))
+            .collect();
+        let lines: Vec<_> = verdicts.iter().map(|(verdict, _)| line(verdict)).collect();
+        writeln!(page, "| {} | {} | {} | {seconds:.1} |", case.name, settings.join("<br>"), lines.join("<br>"))
+            .unwrap();
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/hard_cases.md");
+    std::fs::write(path, page).unwrap();
+}
+
+fn line(Verdict { criterion, figure, met }: &Verdict) -> String {
+    format!("{}{criterion}: {figure}", if *met { "" } else { "**not met:** " })
+}
+
+/// The list of what is not met.
+fn missed(page: &mut String, outcomes: &[Outcome]) {
+    let of = |outcome: &Outcome| {
+        let verdicts = outcome.verdicts.iter().filter(|(verdict, _)| !verdict.met);
+        verdicts
+            .map(|(Verdict { criterion, figure, .. }, _)| format!("- {}: {criterion}: {figure}\n", outcome.case.name))
+            .collect()
+    };
+    let lines: Vec<String> = outcomes.iter().flat_map(|outcome| -> Vec<String> { of(outcome) }).collect();
+    let checks: usize = outcomes.iter().map(|outcome| outcome.verdicts.len()).sum();
+    let seconds: f64 = outcomes.iter().map(|outcome| outcome.seconds).sum();
+    writeln!(
+        page,
+        "\n## What is not met\n\n{} of {checks} criteria in {} cases are not met. All cases together take {seconds:.0} s of one core.\n\n{}",
+        lines.len(),
+        outcomes.len(),
+        lines.concat().trim_end()
+    )
+    .unwrap();
+}
