@@ -28,9 +28,10 @@ impl Case {
         Self { group, name: name.into(), scene, sets, checks: Vec::new(), open: Vec::new(), quick: false }
     }
 
-    /// What each run to an end must show: it ends, J > 0, no energy out of nothing.
+    /// What each run to an end must show: it ends, J > 0, no energy out of nothing, a shape that agrees with F.
     fn base(self) -> Self {
-        self.must(checks::ends()).must(checks::sound()).must(checks::energy()).must(checks::watch())
+        let case = self.must(checks::ends()).must(checks::sound()).must(checks::energy()).must(checks::watch());
+        case.must(checks::shape())
     }
 
     /// One more criterion.

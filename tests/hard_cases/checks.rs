@@ -52,6 +52,19 @@ pub fn sound() -> Check {
     })
 }
 
+/// The deformed shape agrees with F.
+pub fn shape() -> Check {
+    check("shape", |run| {
+        let drift = run.number(&["max_drift"]);
+        // A fifth of its length is what the shape of a cell may be off by before cells are seen to be torn apart.
+        verdict(
+            "shape and F agree: grad u - (F - 1) below .2 in each cell at the end",
+            format!("{drift:.3}"),
+            drift < 0.2,
+        )
+    })
+}
+
 /// Total energy, with what laws have dissipated, against the start and the work: at most this share above.
 const ENERGY: f64 = 1e-6;
 
