@@ -49,18 +49,18 @@ fn outcome(case: Case) -> Outcome {
 
 /// Runs the cases, a few at once; the outcomes stand in the order of the cases.
 fn outcomes(cases: Vec<Case>) -> Vec<Outcome> {
+    // Those that take minutes begin first, so that no thread waits for them at the end.
+    let mut order: Vec<_> = (0..cases.len()).collect();
+    order.sort_by_key(|&k| !cases[k].long);
     let cases: Vec<_> = cases.into_iter().map(|case| Mutex::new(Some(case))).collect();
     let done: Vec<_> = cases.iter().map(|_| Mutex::new(None)).collect();
     let next = AtomicUsize::new(0);
     std::thread::scope(|scope| {
         for _ in 0..SIDE_BY_SIDE {
             scope.spawn(|| {
-                while let Some((case, place)) = {
-                    let k = next.fetch_add(1, Ordering::Relaxed);
-                    cases.get(k).zip(done.get(k))
-                } {
-                    let case = case.lock().unwrap().take().unwrap();
-                    *place.lock().unwrap() = Some(outcome(case));
+                while let Some(&k) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let case = cases[k].lock().unwrap().take().unwrap();
+                    *done[k].lock().unwrap() = Some(outcome(case));
                 }
             });
         }

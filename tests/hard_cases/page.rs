@@ -47,7 +47,7 @@ fn missed(page: &mut String, outcomes: &[Outcome]) {
     let seconds: f64 = outcomes.iter().map(|outcome| outcome.seconds).sum();
     writeln!(
         page,
-        "\n## What is not met\n\n{} of {checks} criteria in {} cases are not met. All cases together take {seconds:.0} s of one core.\n\n{}",
+        "\n## What is not met\n\nOf {checks} criteria in {1} cases {0} are not met. All cases together take {seconds:.0} s of one core.\n\n{2}",
         lines.len(),
         outcomes.len(),
         lines.concat().trim_end()
