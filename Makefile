@@ -1,13 +1,15 @@
 # make demo     the paper's impact, from the mesh to the figures
 # make test     every test
 # make study    what accuracy costs in time: tables and plots of docs/cost.md
+# make hard-cases   shocks, corners, long runs and other hard cases: docs/hard_cases.md and its pictures
 # make bench    the speed of the step on this machine: tables and roofline of docs/performance.md
-.PHONY: help setup build demo test study bench clean
+.PHONY: help setup build demo test study hard-cases bench clean
 
 help:
 	@echo "make demo    install what is missing, build, run the paper's impact with all methods, draw its figures"
 	@echo "make test    install what is missing, run every test"
 	@echo "make study   measure what accuracy costs in time: the tables and plots of docs/cost.md, again"
+	@echo "make hard-cases   run all hard cases (ten minutes) and write docs/hard_cases.md and docs/hard/, again"
 	@echo "make bench   measure the speed (ten minutes): runs/bench/, docs/performance.md, docs/img/roofline.svg"
 	@echo "make build   the program; its last line says where cargo has put it"
 	@echo "make setup   only install what is missing (Debian packages, .venv)"
@@ -28,6 +30,9 @@ test: setup
 
 study: build
 	@tools/study.sh
+
+hard-cases: build
+	@tools/hard_cases.sh
 
 bench: build
 	@tools/bench.sh

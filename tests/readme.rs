@@ -38,8 +38,7 @@ fn commands_of_the_pipeline_run() {
     let folder = tempfile::tempdir().unwrap();
     let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes");
     std::fs::create_dir(folder.path().join("meshes")).unwrap();
-    for entry in std::fs::read_dir(meshes).unwrap() {
-        let path = entry.unwrap().path();
+    for path in std::fs::read_dir(meshes).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file()) {
         std::fs::copy(&path, folder.path().join("meshes").join(path.file_name().unwrap())).unwrap();
     }
     for scene in ["square_impact", "plate_hole"] {

@@ -69,6 +69,11 @@ impl Table {
         Table { names, rows: lines.map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect() }
     }
 
+    /// Whether it has a column.
+    pub fn has(&self, name: &str) -> bool {
+        self.names.iter().any(|n| n == name)
+    }
+
     /// A column by its name.
     pub fn column(&self, name: &str) -> Vec<f64> {
         let k = self.names.iter().position(|n| n == name).unwrap_or_else(|| panic!("no column {name}"));
