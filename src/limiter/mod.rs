@@ -11,6 +11,7 @@
 //! A new limiter is one file with a type that implements [`CellLimiter`] and its entry in the registry.
 
 mod cell;
+mod energy;
 mod modes;
 mod moment;
 mod neighbour;
@@ -29,6 +30,7 @@ use crate::operators::Operators;
 use crate::state::UNKNOWNS;
 use crate::step::{Corrected, Correction, Made, Notes, Scheme};
 use crate::tensor::DEFORMATION;
+use energy::Nodal;
 use modes::Legendre;
 
 /// Limits one cell.
@@ -59,17 +61,21 @@ impl<K: CellLimiter> Limiter<K> {
     fn limit(&self, made: &Made, block: &mut Corrected, lane: usize) -> bool {
         let cell = Cell { made, legendre: &self.legendre, block: block.number, lane };
         let Some(modes) = self.kind.limit(&cell) else { return false };
-        let (operators, n) = (&made.scheme.operators, self.legendre.nodes());
-        let weights = operators.node_weights(block.number, lane);
+        let n = self.legendre.nodes();
+        let weights = made.scheme.operators.node_weights(block.number, lane);
         let area: f64 = weights[..n].iter().sum();
+        let old = Nodal::of(block.u, n, lane);
+        let mut new = old.clone();
         let first = if cell.law().has_memory() { DEFORMATION } else { 0 };
-        for (k, values) in block.u.chunks_exact_mut(n).enumerate().take(UNKNOWNS).skip(first) {
-            let new = self.legendre.values(&modes.of[k]);
+        for k in first..UNKNOWNS {
+            let values = self.legendre.values(&modes.of[k]);
             // Modes of the parent cell are not orthogonal with J: a constant brings the mean back.
-            let moved = values.iter().zip(&new).zip(&weights).map(|((old, new), weight)| weight * (old.0[lane] - new));
+            let moved = old.of[k].iter().zip(&values).zip(&weights).map(|((old, new), weight)| weight * (old - new));
             let shift = moved.sum::<f64>() / area;
-            values.iter_mut().zip(&new).for_each(|(value, new)| value.0[lane] = new + shift);
+            new.of[k].iter_mut().zip(&values).take(n).for_each(|(new, value)| *new = value + shift);
         }
+        energy::hold(cell.law(), &weights[..n], &old, &mut new);
+        new.store(block.u, n, lane);
         true
     }
 }

@@ -4,6 +4,7 @@ use super::CellLimiter;
 use super::cell::{Beside, Cell};
 use super::modes::Modes;
 use crate::state::UNKNOWNS;
+use crate::tensor::DEFORMATION;
 
 /// Krivodonova, J. Comput. Phys. 226, 2007: along each axis, from the highest mode i = N down to 1,
 ///
@@ -35,14 +36,16 @@ impl CellLimiter for MomentLimiter {
 
     fn limit(&self, cell: &Cell) -> Option<Modes> {
         let own = cell.modes();
-        let (mut out, mut changed) = (own.clone(), false);
-        for axis in 0..2 {
+        let along = |axis: usize| {
             let sides = [2 * axis, 2 * axis + 1].map(|face| cell.beside(face, &own));
-            if sides.iter().any(Option::is_some) {
-                changed |= self.limit_along(axis, cell, (&own, &sides), &mut out);
-            }
+            let mut out = own.clone();
+            let changed = sides.iter().any(Option::is_some) && self.limit_along(axis, cell, (&own, &sides), &mut out);
+            changed.then_some(out)
+        };
+        match (along(0), along(1)) {
+            (Some(one), Some(two)) => Some(shorter(cell, one, &two)),
+            (one, two) => one.or(two),
         }
-        changed.then_some(out)
     }
 }
 
@@ -95,6 +98,23 @@ impl MomentLimiter {
         }
         any
     }
+}
+
+/// What both axes have limited: of a mode along one axis that axis, of a mixed mode the shorter one, p over rho0 c_p, so that no axis
+/// comes first.
+fn shorter(cell: &Cell, mut one: Modes, two: &Modes) -> Modes {
+    let law = cell.law();
+    let scale = 1.0 / (law.density() * law.pressure_speed([1.0, 0.0, 0.0, 1.0], [1.0, 0.0]));
+    let square = |u: [f64; UNKNOWNS]| -> f64 {
+        u.iter().enumerate().map(|(k, u)| if k < DEFORMATION { u * u } else { (scale * u).powi(2) }).sum()
+    };
+    for number in 1..one.m * one.m {
+        let (i, j, b) = (number / one.m, number % one.m, two.mode(number));
+        if i == 0 || (j > 0 && square(b) < square(one.mode(number))) {
+            one.set(number, b);
+        }
+    }
+    one
 }
 
 /// The smaller of two numbers of one sign, else 0.

@@ -7,7 +7,7 @@ use crate::state::UNKNOWNS;
 
 /// Kuzmin, J. Comput. Appl. Math. 233, 2010, component by component: the linear part of each derivative may not leave, at a corner of the
 /// cell, the range of the means of that derivative over the cells around the corner. Modes of order q = i + j are cut by
-/// alpha_q = max over the orders from q on, so that smooth extrema stay.
+/// alpha_q = max over the orders from q to N, so that smooth extrema stay.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct VertexLimiter;
 
@@ -21,7 +21,7 @@ impl CellLimiter for VertexLimiter {
 
     fn limit(&self, cell: &Cell) -> Option<Modes> {
         let own = cell.modes();
-        let top = 2 * (own.m - 1);
+        let top = own.m - 1;
         let mut alpha = [[1.0f64; UNKNOWNS]; MOST_ORDERS];
         for ends in [[0, 0], [0, 1], [1, 0], [1, 1]] {
             narrow(cell, &own, ends, &mut alpha);
@@ -72,9 +72,15 @@ fn narrow(cell: &Cell, own: &Modes, ends: [usize; 2], alpha: &mut [[f64; UNKNOWN
             // The highest mode of all has no linear part.
             let Some(alpha) = alpha.get_mut(i + j + 1) else { continue };
             for (k, (alpha, values)) in alpha.iter_mut().zip(&own.of).enumerate() {
-                let one = if i + 1 < m { values[number + m] * scale(i + 1, j) * (ends[0] as f64 - 0.5) } else { 0.0 };
-                let two = if j + 1 < m { values[number + 1] * scale(i, j + 1) * (ends[1] as f64 - 0.5) } else { 0.0 };
-                let rise = one + two;
+                let slope = |there: bool, number: usize| if there { values[number] } else { 0.0 };
+                let slopes = [slope(i + 1 < m, number + m), slope(j + 1 < m, number + 1)];
+                let size = values[..m * m].iter().fold(0.0f64, |a, b| a.max(b.abs()));
+                // A derivative that is rounding says nothing.
+                if slopes.iter().all(|slope| slope.abs() <= ROUNDING * size) {
+                    continue;
+                }
+                let one = slopes[0] * scale(i + 1, j) * (ends[0] as f64 - 0.5);
+                let rise = one + slopes[1] * scale(i, j + 1) * (ends[1] as f64 - 0.5);
                 let far = if rise > 0.0 { high.of[k][number] } else { low.of[k][number] };
                 if rise != 0.0 {
                     let room = (far - values[number]) * scale(i, j) / rise;

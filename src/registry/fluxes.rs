@@ -17,7 +17,8 @@ pub struct Flux {
 pub const DEFAULT: &str = "dual";
 
 /// The same in words, see [`super::limiters::Kind::flux`].
-pub const DEFAULTS: &str = "dual; rusanov with a limiter and laws without internal variables";
+pub const DEFAULTS: &str =
+    "dual; with a limiter rusanov, but for laws with internal variables or a Poisson's ratio above .45";
 
 const WITH_MEMORY: &str = "makes energy where a law with internal variables flows";
 

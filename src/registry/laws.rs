@@ -63,6 +63,12 @@ pub static LAWS: Table<Build> = Table::new(&[
     },
 ]);
 
+/// Whether a body of the law is nearly incompressible: (c_p/c_s)^2 above 11, Poisson's ratio above .45.
+pub fn is_soft(law: &super::Chosen<Build>) -> bool {
+    let [larger, smaller] = (law.build())(&law.values).moduli([1.0, 0.0, 0.0, 1.0], [1.0, 0.0]);
+    larger > 11.001 * smaller
+}
+
 /// Whether a law has internal variables.
 pub fn has_memory(entry: &Entry<Build>) -> bool {
     // What they are does not depend on the parameters.

@@ -12,7 +12,8 @@ pub type Make = fn(&Values, usize) -> Arc<dyn Correction>;
 pub struct Kind {
     /// Makes it; none: no limiter.
     pub make: Option<Make>,
-    /// The flux of a scene that names none, where no law has memory. A limiter needs one that damps all jumps of F: with `dual` the
+    /// The flux of a scene that names none, where no law has internal variables or a
+    /// Poisson's ratio above .45 (there it makes energy). A limiter needs one that damps all jumps of F: with `dual` the
     /// stress behind the shock of the paper's impact is wrong by .8 % (S2, 200 m/s) to 10 % (S1, 2000 m/s), with `rusanov` by .04 %.
     pub flux: Option<&'static str>,
 }

@@ -47,9 +47,9 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     let materials = materials(&mut material_tables, &general, degree)?;
     let limiter = chosen(limiter_table.as_mut(), &tables::LIMITER[0], (&LIMITERS, limiters::DEFAULT), degree)?;
     let names_a_flux = scheme_table.is_some_and(|table| table.has("flux"));
-    let remembers = materials.iter().any(|material| laws::has_memory(material.law.entry));
-    if let Some(entry) = limiter.build().flux.filter(|_| !names_a_flux && !remembers).and_then(|name| FLUXES.find(name))
-    {
+    let other = |material: &Material| laws::has_memory(material.law.entry) || laws::is_soft(&material.law);
+    let keeps_its_flux = names_a_flux || degree == 0 || materials.iter().any(other);
+    if let Some(entry) = limiter.build().flux.filter(|_| !keeps_its_flux).and_then(|name| FLUXES.find(name)) {
         scheme.flux = Chosen { entry, values: Default::default() };
     }
     let (start, end) = time(time_table.as_mut().ok_or_else(|| need("time", "add [time] with end, in s"))?)?;
