@@ -10,6 +10,7 @@ use crate::lane::Kernel;
 use crate::mesh::{self, Link, Mesh};
 use crate::operators::{Limits, Needs, Operators, Sampling};
 use crate::registry::methods::Samples;
+use crate::riemann::Looks;
 use crate::run::Limits as WatchLimits;
 use crate::run::Settings;
 use crate::scene::{self, Boundary, Mesh as Source, Scene, Step};
@@ -155,7 +156,9 @@ impl Scene {
     /// A step beyond the stability limit.
     pub fn settings(&self) -> Result<Settings> {
         let (n, integration) = (self.scheme.degree, self.integration());
-        let limit = cfl::limit(&integration, n);
+        let holds = (self.scheme.flux.build().make)().looks() == Looks::Displacement;
+        let held = if holds { cfl::share_when_held(&integration, n) } else { 1.0 };
+        let limit = held * cfl::limit(&integration, n);
         if limit == 0.0 {
             return Err(self.error(
                 "scheme.time_degree",
@@ -165,7 +168,7 @@ impl Scene {
         }
         let (key, safety) = match self.scheme.step {
             Step::Safety(safety) => ("scheme.safety", safety),
-            Step::Cfl(cfl) => ("scheme.cfl", cfl::safety_of_cfl(cfl, &integration, n)),
+            Step::Cfl(cfl) => ("scheme.cfl", cfl::safety_of_cfl(cfl, &integration, n) / held),
         };
         if safety > 1.0 {
             let allowed = limit * (2 * n + 1) as f64;

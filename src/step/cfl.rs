@@ -19,6 +19,16 @@ pub fn limit(method: &Method, degree: usize) -> f64 {
     }
 }
 
+/// What is left of [`limit`] where the flux holds the jumps of the displacement ([`crate::riemann::hold`]). For ADER of degree 1 they
+/// make the step stiffer: noise about F = 1 on periodic squares of 6 x 6 and 8 x 8 cells grows at .86 of the limit and more, and decays at
+/// .84. From degree 2 on, and for Runge-Kutta, it decays at .99 of the limit.
+pub fn share_when_held(method: &Method, degree: usize) -> f64 {
+    match (method, degree) {
+        (Method::Ader { .. }, 1) => 0.84,
+        _ => 1.0,
+    }
+}
+
 /// The paper's reading of a cfl number: dt = cfl h / ((2N + 1) c), as a share of the limit.
 pub fn safety_of_cfl(cfl: f64, method: &Method, degree: usize) -> f64 {
     cfl / ((2 * degree + 1) as f64 * limit(method, degree))
