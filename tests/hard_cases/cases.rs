@@ -262,12 +262,12 @@ fn plastic() -> Vec<Case> {
     let mut cases = vec![
         bar("Taylor bar, copper, without limiter", "taylor_copper", "limiter.kind=off").quick(true),
         bar("Taylor bar, copper, with limiter", "taylor_copper", "").open(&["end", "energy", "watch", "length"]),
-        bar("Taylor bar, copper, with limiter, S1", "taylor_copper", "scheme.degree=1").open(&["energy", "watch"]),
+        bar("Taylor bar, copper, with limiter, S1", "taylor_copper", "scheme.degree=1").open(&["watch"]),
         bar("Taylor bar, copper, with limiter, S3", "taylor_copper", "scheme.degree=3")
-            .open(&["end", "energy", "watch", "length"]),
+            .open(&["end", "watch", "length"]),
         bar("Taylor bar, copper, vertex limiter", "taylor_copper", "limiter.kind=vertex"),
         bar("Taylor bar, aluminium, without limiter", "taylor_aluminium", "limiter.kind=off").quick(true),
-        bar("Taylor bar, aluminium, with limiter", "taylor_aluminium", "").open(&["energy", "watch"]),
+        bar("Taylor bar, aluminium, with limiter", "taylor_aluminium", "").open(&["watch"]),
     ];
     for (cells, open) in
         [([10, 1], &[][..]), ([30, 3], &["watch"]), ([40, 4], &["watch"]), ([60, 6], &["end", "watch", "length"])]
@@ -340,7 +340,7 @@ fn noise() -> Vec<Case> {
                 let case = case.holds().must(checks::decays());
                 let open: &[_] = match (state, degree, method) {
                     (_, _, "rk-dgfem") => &[],
-                    ("1,0,0,1", 1, _) => &["end", "energy", "watch", "noise"],
+                    ("1,0,0,1", 1, _) => &["end", "watch"],
                     ("0.965,0,0,1", 1, _) => &["noise"],
                     ("0.7,0,0,0.7", 2, _) => &["energy", "noise"],
                     _ => &[],
@@ -351,7 +351,7 @@ fn noise() -> Vec<Case> {
     }
     let sides = ["left", "right", "bottom", "top"].map(|side| format!("{{group=\"{side}\",kind=\"free\"}}")).join(",");
     for (name, more, open) in [
-        ("", "", &["end", "energy", "watch", "noise"][..]),
+        ("", "", &["end", "watch"][..]),
         (", rusanov", "scheme.flux=rusanov", &[]),
         (", safety .8", "scheme.safety=0.8", &[]),
     ] {
