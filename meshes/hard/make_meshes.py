@@ -56,7 +56,7 @@ def main():
     notch = lambda x, y: "notch" if min(x, y) > 1.4 and max(x, y) < 2.99 else box(x, y)  # noqa: E731
     write("l_shape", 18, 18, lambda i, j: (i / 6, j / 6), notch, lambda i, j: i < 9 or j < 9)
     # A bar of squares of .1 m, with two columns of slivers 1:50, .002 m wide, at x = .5 and x = 1.
-    x = [0.1 * i for i in range(6)] + [0.502 + 0.1 * i for i in range(1)] + [0.6 + 0.1 * i for i in range(5)] + [1.002]
+    x = [0.1 * i for i in range(6)] + [0.502] + [0.6 + 0.1 * i for i in range(5)] + [1.002]
     x += [1.1 + 0.1 * i for i in range(20)]
     write("slivers", len(x) - 1, 4, lambda i, j: (x[i], 0.1 * j), sides(3.0, 0.4))
     # A bar whose cells are chevrons with angles of 20 degrees; the ends are straight.

@@ -32,8 +32,12 @@ impl Case {
 
     /// What each run to an end must show: it ends, J > 0, no energy out of nothing, a shape that agrees with F.
     fn base(self) -> Self {
-        let case = self.must(checks::ends()).must(checks::sound()).must(checks::energy()).must(checks::watch());
-        case.must(checks::shape())
+        self.holds().must(checks::shape())
+    }
+
+    /// The same of a body that starts with F0 other than 1, whose displacement tells nothing of F.
+    fn holds(self) -> Self {
+        self.must(checks::ends()).must(checks::sound()).must(checks::energy()).must(checks::watch())
     }
 
     /// One more criterion.
@@ -258,12 +262,12 @@ fn plastic() -> Vec<Case> {
     let mut cases = vec![
         bar("Taylor bar, copper, without limiter", "taylor_copper", "limiter.kind=off").quick(true),
         bar("Taylor bar, copper, with limiter", "taylor_copper", "").open(&["end", "energy", "watch", "length"]),
-        bar("Taylor bar, copper, with limiter, S1", "taylor_copper", "scheme.degree=1").open(&["energy", "watch"]),
+        bar("Taylor bar, copper, with limiter, S1", "taylor_copper", "scheme.degree=1").open(&["watch"]),
         bar("Taylor bar, copper, with limiter, S3", "taylor_copper", "scheme.degree=3")
-            .open(&["end", "energy", "watch", "length"]),
+            .open(&["end", "watch", "length"]),
         bar("Taylor bar, copper, vertex limiter", "taylor_copper", "limiter.kind=vertex"),
         bar("Taylor bar, aluminium, without limiter", "taylor_aluminium", "limiter.kind=off").quick(true),
-        bar("Taylor bar, aluminium, with limiter", "taylor_aluminium", "").open(&["energy", "watch"]),
+        bar("Taylor bar, aluminium, with limiter", "taylor_aluminium", "").open(&["watch"]),
     ];
     for (cells, open) in
         [([10, 1], &[][..]), ([30, 3], &["watch"]), ([40, 4], &["watch"]), ([60, 6], &["end", "watch", "length"])]
@@ -333,10 +337,10 @@ fn noise() -> Vec<Case> {
                     "scheme.degree={degree} scheme.method={method} time.end={end:e} initial.deformation=[\"{deformation}\"]"
                 );
                 let case = Case::new(group, format!("F = ({state}), S{degree}, {method}"), "compressed_noise", &sets);
-                let case = case.base().must(checks::decays());
+                let case = case.holds().must(checks::decays());
                 let open: &[_] = match (state, degree, method) {
                     (_, _, "rk-dgfem") => &[],
-                    ("1,0,0,1", 1, _) => &["end", "energy", "watch", "noise"],
+                    ("1,0,0,1", 1, _) => &["end", "watch"],
                     ("0.965,0,0,1", 1, _) => &["noise"],
                     ("0.7,0,0,0.7", 2, _) => &["energy", "noise"],
                     _ => &[],
@@ -347,14 +351,14 @@ fn noise() -> Vec<Case> {
     }
     let sides = ["left", "right", "bottom", "top"].map(|side| format!("{{group=\"{side}\",kind=\"free\"}}")).join(",");
     for (name, more, open) in [
-        ("", "", &["end", "energy", "watch", "noise"][..]),
+        ("", "", &["end", "watch"][..]),
         (", rusanov", "scheme.flux=rusanov", &[]),
         (", safety .8", "scheme.safety=0.8", &[]),
     ] {
         let sets = format!(
             r#"scheme.degree=1 time.end=4e-3 mesh.rectangle.cells=[32,32] initial.deformation=["1","0","0","1"] boundary=[{sides}] {more}"#
         );
-        let case = Case::new(group, format!("free square, 32 x 32, S1{name}"), "compressed_noise", &sets).base();
+        let case = Case::new(group, format!("free square, 32 x 32, S1{name}"), "compressed_noise", &sets).holds();
         cases.push(case.must(checks::decays()).open(open));
     }
     cases
