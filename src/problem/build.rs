@@ -150,15 +150,20 @@ impl Scene {
         self.boundaries.iter().map(|boundary| (boundary.group.as_str(), of(boundary))).collect()
     }
 
+    /// dt c / h beyond which the method is unstable with the flux of the scene.
+    pub fn step_limit(&self) -> f64 {
+        let (n, integration) = (self.scheme.degree, self.integration());
+        let holds = (self.scheme.flux.build().make)().looks() == Looks::Displacement;
+        let held = if holds { cfl::share_when_held(&integration, n) } else { 1.0 };
+        held * cfl::limit(&integration, n)
+    }
+
     /// dt c / h and the end.
     ///
     /// # Errors
     /// A step beyond the stability limit.
     pub fn settings(&self) -> Result<Settings> {
-        let (n, integration) = (self.scheme.degree, self.integration());
-        let holds = (self.scheme.flux.build().make)().looks() == Looks::Displacement;
-        let held = if holds { cfl::share_when_held(&integration, n) } else { 1.0 };
-        let limit = held * cfl::limit(&integration, n);
+        let (n, limit) = (self.scheme.degree, self.step_limit());
         if limit == 0.0 {
             return Err(self.error(
                 "scheme.time_degree",
@@ -168,7 +173,7 @@ impl Scene {
         }
         let (key, safety) = match self.scheme.step {
             Step::Safety(safety) => ("scheme.safety", safety),
-            Step::Cfl(cfl) => ("scheme.cfl", cfl::safety_of_cfl(cfl, &integration, n) / held),
+            Step::Cfl(cfl) => ("scheme.cfl", cfl / ((2 * n + 1) as f64 * limit)),
         };
         if safety > 1.0 {
             let allowed = limit * (2 * n + 1) as f64;

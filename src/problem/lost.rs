@@ -9,7 +9,7 @@ use crate::registry::fluxes;
 use crate::run::{Lost, Report};
 use crate::scene::{Boundary, Scene};
 use crate::state::State;
-use crate::step::{LossKind, cfl};
+use crate::step::LossKind;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -98,9 +98,8 @@ impl Case<'_> {
     }
 
     fn step_size(&self) -> Option<String> {
-        let (scheme, degree) = (&self.problem.scheme, self.problem.scene.scheme.degree);
-        let courant = self.problem.scene.settings().ok()?.courant;
-        let safety = courant / cfl::limit(&scheme.method, degree);
+        let scene = &self.problem.scene;
+        let safety = scene.settings().ok()?.courant / scene.step_limit();
         // A share that is written as a cfl number is rounded.
         (safety > SAFETY + 1e-9).then(|| {
             format!("the step is {safety:.2} of the limit, which is that of small waves: give scheme.safety = {SAFETY}")
