@@ -114,7 +114,7 @@ fn numbers_that_look_like_other_units_are_named_with_the_unit_that_is_meant() {
         assert!(words.iter().all(|word| said.contains(word)), "{sets}: {said}");
     };
     // A stable step is 6.38e-6 s.
-    expect("--set time.end=5e-6", &["note: the run is one step: it ends 6.000e-6 s", "times are in s"]);
+    expect("--set time.end=5e-6", &["note: the run is one step: it ends 5.000e-6 s", "times are in s"]);
     expect("--set time.start=1 --set time.end=1.000006", &["the run is one step"]);
     // c_p is 5875 m/s; with E in GPa and density in g/cm^3 it is 5.875.
     expect(
