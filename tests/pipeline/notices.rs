@@ -113,9 +113,9 @@ fn numbers_that_look_like_other_units_are_named_with_the_unit_that_is_meant() {
         let said = said(sets);
         assert!(words.iter().all(|word| said.contains(word)), "{sets}: {said}");
     };
-    // A stable step is 6.38e-6 s.
+    // A stable step is 5.36e-6 s.
     expect("--set time.end=5e-6", &["note: the run is one step: it ends 5.000e-6 s", "times are in s"]);
-    expect("--set time.start=1 --set time.end=1.000006", &["the run is one step"]);
+    expect("--set time.start=1 --set time.end=1.000005", &["the run is one step"]);
     // c_p is 5875 m/s; with E in GPa and density in g/cm^3 it is 5.875.
     expect(
         "--set initial.velocity=[\"8e3*x\",0] --set initial.deformation=[1,0,0,1] --set time.end=1e-6",
