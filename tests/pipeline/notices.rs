@@ -148,7 +148,7 @@ fn numbers_that_look_like_other_units_are_named_with_the_unit_that_is_meant() {
     assert!(bench.run("mesh info long.h5").contains("note: the body"));
     expect(
         "--set output=[{kind=\"ledger\",every=1e-7}]",
-        &["note: `every` of output \"ledger\" is 1e-7 s, shorter than a step of 6.38"],
+        &["note: `every` of output \"ledger\" is 1e-7 s, shorter than a step of 5.36"],
     );
     // At the limits of what is usual nothing is said.
     assert!(!said("").contains("note: "));
