@@ -32,7 +32,7 @@ impl Default for Sensor {
     }
 }
 
-/// The factor of the limit. On the impact of the paper at 200 m/s larger ones leave overshoots at S1 (.07 % with it, 7 % at .13).
+/// The factor of the limit. On the impact of the paper at 200 m/s larger ones leave overshoots at S1 (.09 % with it, 9 % at .13).
 const FACTOR: f64 = 0.6;
 
 /// A jump of a strain, or of a velocity over c_p, below this is rounding.
