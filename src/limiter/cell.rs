@@ -1,8 +1,8 @@
 //! A cell that is limited, and what lies around it.
 
-use super::modes::{Legendre, Modes};
+use super::modes::{Legendre, Modes, of_lane};
 use super::neighbour::{Axes, around, behind};
-use super::{lane_of, waves::Waves};
+use super::waves::Waves;
 use crate::operators::Neighbour;
 use crate::state::UNKNOWNS;
 use crate::step::{Law, Made};
@@ -32,9 +32,8 @@ pub struct Beside {
 impl Cell<'_> {
     /// Its modes.
     pub fn modes(&self) -> Modes {
-        let (u, n) = (self.made.unknowns(self.block), self.legendre.nodes());
-        let component = |k: usize| self.legendre.modes(lane_of(&u[k * n..(k + 1) * n], self.lane));
-        Modes { m: self.legendre.m(), of: std::array::from_fn(component) }
+        let nodes = of_lane(self.made.unknowns(self.block), self.legendre.nodes(), self.lane);
+        Modes { m: self.legendre.m(), of: self.legendre.modes(&nodes) }
     }
 
     /// Its law.
@@ -106,7 +105,7 @@ impl Cell<'_> {
         for number in 0..self.legendre.nodes() {
             out.set(number, reflected(out.mode(number), n));
         }
-        (0..2).for_each(|i| out.of[4 + i][0] += 2.0 * self.law().density() * speed * n[i]);
+        (0..2).for_each(|i| out.of[0][4 + i] += 2.0 * self.law().density() * speed * n[i]);
         Some(out)
     }
 

@@ -3,44 +3,36 @@
 //! It cuts the slopes of F along one axis at a time. Where the slope of F11 falls and that of F22 stays, the slope of J may grow, whose
 //! energy is lambda/mu times larger: a nearly incompressible body made 10 % of its energy so within some hundred steps.
 
-use super::modes::Component;
+use super::modes::{Places, of_lane};
 use crate::lane::F8;
 use crate::state::UNKNOWNS;
 use crate::step::Law;
 use crate::tensor::DEFORMATION;
 
-/// F and p of a cell at its nodes: `[component][node]`.
+/// F and p of a cell at its nodes.
 #[derive(Debug, Clone)]
 pub(super) struct Nodal {
-    pub of: [Component; UNKNOWNS],
+    /// `[node][component]`.
+    pub of: Places,
 }
 
 impl Nodal {
     /// Those of a lane.
     pub fn of(u: &[F8], n: usize, lane: usize) -> Self {
-        let mut out = Self { of: [[0.0; crate::operators::MOST_NODES]; UNKNOWNS] };
-        for (out, values) in out.of.iter_mut().zip(u.chunks_exact(n)) {
-            out.iter_mut().zip(values).for_each(|(out, value)| *out = value.0[lane]);
-        }
-        out
+        Self { of: of_lane(u, n, lane) }
     }
 
     /// Into a lane.
     pub fn store(&self, u: &mut [F8], n: usize, lane: usize) {
-        for (own, values) in self.of.iter().zip(u.chunks_exact_mut(n)) {
-            own.iter().zip(values).for_each(|(own, value)| value.0[lane] = *own);
+        for (k, values) in u.chunks_exact_mut(n).take(UNKNOWNS).enumerate() {
+            self.of.iter().zip(values).for_each(|(own, value)| value.0[lane] = own[k]);
         }
-    }
-
-    fn node(&self, a: usize) -> [f64; UNKNOWNS] {
-        std::array::from_fn(|k| self.of[k][a])
     }
 
     /// sum_a m_a W(F_a) and sum_a m_a |p_a|^2 / (2 rho0), J/m.
     fn energy(&self, law: &Law, masses: &[f64]) -> [f64; 2] {
         let mut out = [0.0; 2];
-        for (a, mass) in masses.iter().enumerate() {
-            let [f11, f12, f21, f22, p1, p2] = self.node(a);
+        for ([f11, f12, f21, f22, p1, p2], mass) in self.of.into_iter().zip(masses) {
             out[0] += mass * law.energy([f11, f12, f21, f22]);
             out[1] += mass * 0.5 * (p1 * p1 + p2 * p2) / law.density();
         }
@@ -50,14 +42,14 @@ impl Nodal {
     /// The root of sum_a m_a |u_a - mean u|^2 over some components.
     fn deviation(&self, masses: &[f64], means: &[f64; UNKNOWNS], components: std::ops::Range<usize>) -> f64 {
         let of = |k: usize| -> f64 {
-            masses.iter().zip(&self.of[k]).map(|(mass, value)| mass * (value - means[k]).powi(2)).sum()
+            masses.iter().zip(&self.of).map(|(mass, values)| mass * (values[k] - means[k]).powi(2)).sum()
         };
         components.map(of).sum::<f64>().sqrt()
     }
 
     fn means(&self, masses: &[f64]) -> [f64; UNKNOWNS] {
         let area: f64 = masses.iter().sum();
-        self.of.map(|values| masses.iter().zip(&values).map(|(mass, value)| mass * value).sum::<f64>() / area)
+        std::array::from_fn(|k| masses.iter().zip(&self.of).map(|(mass, values)| mass * values[k]).sum::<f64>() / area)
     }
 }
 
@@ -82,11 +74,11 @@ pub(super) fn hold(law: &Law, masses: &[f64], old: &Nodal, new: &mut Nodal) {
         let share = if lengths[0] > 0.0 { (lengths[1] / lengths[0]).min(1.0) } else { 1.0 };
         for k in components {
             for a in 0..masses.len() {
-                new.of[k][a] = means[k] + share * (old.of[k][a] - means[k]);
+                new.of[a][k] = means[k] + share * (old.of[a][k] - means[k]);
             }
         }
     }
     if rises(energy(new)[0], before[0]) {
-        new.of[..DEFORMATION].copy_from_slice(&old.of[..DEFORMATION]);
+        new.of.iter_mut().zip(&old.of).for_each(|(new, old)| new[..DEFORMATION].copy_from_slice(&old[..DEFORMATION]));
     }
 }

@@ -25,7 +25,7 @@ pub use moment::MomentLimiter;
 pub use sensor::Sensor;
 pub use vertex::VertexLimiter;
 
-use crate::lane::{F8, LANES};
+use crate::lane::LANES;
 use crate::operators::Operators;
 use crate::state::UNKNOWNS;
 use crate::step::{Corrected, Correction, Made, Notes, Scheme};
@@ -67,12 +67,12 @@ impl<K: CellLimiter> Limiter<K> {
         let old = Nodal::of(block.u, n, lane);
         let mut new = old.clone();
         let first = if cell.law().has_memory() { DEFORMATION } else { 0 };
+        let values = self.legendre.values(&modes.of);
         for k in first..UNKNOWNS {
-            let values = self.legendre.values(&modes.of[k]);
             // Modes of the parent cell are not orthogonal with J: a constant brings the mean back.
-            let moved = old.of[k].iter().zip(&values).zip(&weights).map(|((old, new), weight)| weight * (old - new));
+            let moved = (0..n).map(|a| weights[a] * (old.of[a][k] - values[a][k]));
             let shift = moved.sum::<f64>() / area;
-            new.of[k].iter_mut().zip(&values).take(n).for_each(|(new, value)| *new = value + shift);
+            (0..n).for_each(|a| new.of[a][k] = values[a][k] + shift);
         }
         energy::hold(cell.law(), &weights[..n], &old, &mut new);
         new.store(block.u, n, lane);
@@ -113,11 +113,6 @@ impl<K: CellLimiter> Correction for Limiter<K> {
 /// The cells of a block as bits, without padding.
 fn cells(operators: &Operators, block: usize) -> u8 {
     (u16::from(u8::MAX) >> (LANES - operators.blocks.count[block])) as u8
-}
-
-/// A component of a cell at its nodes.
-fn lane_of(values: &[F8], lane: usize) -> impl Iterator<Item = f64> {
-    values.iter().map(move |value| value.0[lane])
 }
 
 #[cfg(test)]

@@ -2,12 +2,14 @@
 
 use super::neighbour::Axes;
 use crate::basis::Lagrange;
-use crate::operators::MOST_NODES;
+use crate::lane::F8;
+use crate::operators::{MOST_NODES, with_nodes};
 use crate::quadrature::legendre;
 use crate::state::UNKNOWNS;
 
-/// Numbers of one component: of modes `[i M + j]`, i along xi1, or of nodes.
-pub type Component = [f64; MOST_NODES];
+/// F and p of each mode `[i M + j]`, i along xi1, or of each node: `[place][component]`. The components of a place follow each other,
+/// so that one instruction of the processor takes several of them.
+pub type Places = [[f64; UNKNOWNS]; MOST_NODES];
 
 /// The modes of F and p of a cell, u(xi) = sum_ij c_ij l_i(xi1) l_j(xi2) with l_i(x) = sqrt(2i+1) P_i(2x-1): c_00 is the mean
 /// over the parent cell.
@@ -15,19 +17,19 @@ pub type Component = [f64; MOST_NODES];
 pub struct Modes {
     /// M = N + 1.
     pub m: usize,
-    /// `[component][i M + j]`.
-    pub of: [Component; UNKNOWNS],
+    /// `[i M + j][component]`.
+    pub of: Places,
 }
 
 impl Modes {
     /// All components of one mode.
     pub fn mode(&self, number: usize) -> [f64; UNKNOWNS] {
-        std::array::from_fn(|k| self.of[k][number])
+        self.of[number]
     }
 
     /// Sets all components of one mode.
     pub fn set(&mut self, number: usize, values: [f64; UNKNOWNS]) {
-        self.of.iter_mut().zip(values).for_each(|(component, value)| component[number] = value);
+        self.of[number] = values;
     }
 
     /// The number of the mode of order `along` in the direction of an axis and `across` in the other.
@@ -44,12 +46,11 @@ impl Modes {
             let factor = if axes.reversed[axis] { -scale[axis] } else { scale[axis] };
             (1..m).for_each(|i| factors[i] = factor * factors[i - 1]);
         }
-        for (out, own) in out.of.iter_mut().zip(&self.of) {
-            for i in 0..m {
-                for j in 0..m {
-                    let from = if axes.swapped { j * m + i } else { i * m + j };
-                    out[i * m + j] = factors[0][i] * factors[1][j] * own[from];
-                }
+        for i in 0..m {
+            for j in 0..m {
+                let from = if axes.swapped { j * m + i } else { i * m + j };
+                let factor = factors[0][i] * factors[1][j];
+                out.of[i * m + j] = self.of[from].map(|own| factor * own);
             }
         }
         out
@@ -91,36 +92,48 @@ impl Legendre {
         self.m * self.m
     }
 
-    /// The modes of a component from its values at the nodes; the quadrature of the nodes is exact for them.
-    pub fn modes(&self, nodes: impl Iterator<Item = f64>) -> Component {
-        let mut values = [0.0; MOST_NODES];
-        values.iter_mut().zip(nodes).for_each(|(out, value)| *out = value);
-        self.twice(&values, &self.forward)
+    /// Modes from the values at the nodes; the quadrature of the nodes is exact for them.
+    pub fn modes(&self, nodes: &Places) -> Places {
+        self.twice(nodes, &self.forward)
     }
 
-    /// The values of a component at the nodes.
-    pub fn values(&self, modes: &Component) -> Component {
+    /// The values at the nodes.
+    pub fn values(&self, modes: &Places) -> Places {
         self.twice(modes, &self.back)
     }
 
-    /// sum_kl x_kl matrix_ki matrix_lj.
-    fn twice(&self, x: &Component, matrix: &[f64]) -> Component {
-        let (m, mut half, mut out) = (self.m, [0.0; MOST_NODES], [0.0; MOST_NODES]);
-        // Rows at a time, so that the inner loop runs over numbers that follow each other.
-        for k in 0..m {
-            for i in 0..m {
-                let factor = matrix[k * m + i];
-                let rows = half[i * m..(i + 1) * m].iter_mut().zip(&x[k * m..(k + 1) * m]);
-                rows.for_each(|(half, x)| *half += factor * x);
-            }
-        }
-        for i in 0..m {
-            for l in 0..m {
-                let factor = half[i * m + l];
-                let rows = out[i * m..(i + 1) * m].iter_mut().zip(&matrix[l * m..(l + 1) * m]);
-                rows.for_each(|(out, matrix)| *out += factor * matrix);
-            }
-        }
-        out
+    fn twice(&self, x: &Places, matrix: &[f64]) -> Places {
+        with_nodes!(self.m, M => twice::<M>(x, matrix))
     }
+}
+
+/// sum_kl x_kl matrix_ki matrix_lj.
+fn twice<const M: usize>(x: &Places, matrix: &[f64]) -> Places {
+    let (mut half, mut out) = ([[[0.0; UNKNOWNS]; M]; M], [[0.0; UNKNOWNS]; MOST_NODES]);
+    let add = |sum: &mut [f64; UNKNOWNS], factor: f64, x: &[f64; UNKNOWNS]| {
+        for (sum, x) in sum.iter_mut().zip(x) {
+            *sum += factor * x;
+        }
+    };
+    let (rows, matrix) = (&x.as_chunks::<M>().0[..M], &matrix.as_chunks::<M>().0[..M]);
+    for (x, factors) in rows.iter().zip(matrix) {
+        for (half, factor) in half.iter_mut().zip(factors) {
+            (0..M).for_each(|l| add(&mut half[l], *factor, &x[l]));
+        }
+    }
+    for (out, half) in out.as_chunks_mut::<M>().0.iter_mut().zip(&half) {
+        for (half, factors) in half.iter().zip(matrix) {
+            (0..M).for_each(|j| add(&mut out[j], factors[j], half));
+        }
+    }
+    out
+}
+
+/// F and p of a lane at the nodes of its cell, from `[component][node]`.
+pub(super) fn of_lane(u: &[F8], n: usize, lane: usize) -> Places {
+    let mut out = [[0.0; UNKNOWNS]; MOST_NODES];
+    for (k, values) in u.chunks_exact(n).take(UNKNOWNS).enumerate() {
+        out.iter_mut().zip(values).for_each(|(out, value)| out[k] = value.0[lane]);
+    }
+    out
 }

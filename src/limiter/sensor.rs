@@ -4,7 +4,7 @@ use super::cells;
 use super::neighbour::behind;
 use crate::lane::{F8, LANES, Lanes, Work, load_array};
 use crate::mesh::FACES;
-use crate::operators::{Neighbour, Operators, Side};
+use crate::operators::{Neighbour, Operators, Side, with_nodes};
 use crate::state::UNKNOWNS;
 use crate::step::{Made, Notes};
 use crate::tensor;
@@ -38,42 +38,6 @@ const FACTOR: f64 = 0.6;
 /// A jump of a strain, or of a velocity over c_p, below this is rounding.
 const ROUNDING: f64 = 1e-11;
 
-/// Runs a body with M = N + 1 as a constant.
-macro_rules! with_line {
-    ($m:expr, $nodes:ident => $body:expr) => {
-        match $m {
-            1 => {
-                const $nodes: usize = 1;
-                $body
-            }
-            2 => {
-                const $nodes: usize = 2;
-                $body
-            }
-            3 => {
-                const $nodes: usize = 3;
-                $body
-            }
-            4 => {
-                const $nodes: usize = 4;
-                $body
-            }
-            5 => {
-                const $nodes: usize = 5;
-                $body
-            }
-            6 => {
-                const $nodes: usize = 6;
-                $body
-            }
-            _ => {
-                const $nodes: usize = 7;
-                $body
-            }
-        }
-    };
-}
-
 /// Where the numbers of a block begin: its areas, what is found of it, its means, its traces `[face][point][component]`.
 const AREA: usize = 0;
 const FOUND: usize = 1;
@@ -99,7 +63,7 @@ impl Sensor {
         }
         let stride = Self::numbers(operators);
         notes.numbers.par_chunks_mut(stride).enumerate().for_each(|(block, out)| {
-            with_line!(operators.line.m, M => made.scheme.kernel.run(Traces::<'_, M> { made, block, out }));
+            with_nodes!(operators.line.m, M => made.scheme.kernel.run(Traces::<'_, M> { made, block, out }));
         });
         let (deviation, length) = (deviation(operators, &notes.numbers, stride), extent(operators));
         let power = 0.25 * (operators.line.m + 1) as f64;
@@ -110,7 +74,7 @@ impl Sensor {
             let h = &operators.geometry.blocks[block].h;
             let most = F8(h.0.map(|h| (factor * h.powf(power)).max(ROUNDING).powi(2)));
             let jumps = Jumps { made, all, stride, block, most };
-            *marked = with_line!(operators.line.m, M => made.scheme.kernel.run(OfDegree::<'_, M>(jumps)));
+            *marked = with_nodes!(operators.line.m, M => made.scheme.kernel.run(OfDegree::<'_, M>(jumps)));
         });
         spread(operators, marked, numbers, stride);
     }

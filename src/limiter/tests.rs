@@ -3,7 +3,7 @@ use super::neighbour::{Axes, around, behind};
 use super::waves::Waves;
 use super::*;
 use crate::boundary::{Boundary, Free, Wall};
-use crate::lane::Kernel;
+use crate::lane::{F8, Kernel};
 use crate::material::NeoHookean;
 use crate::mesh::{Mesh, links, map, rectangle};
 use crate::operators::Needs;
@@ -304,9 +304,9 @@ fn modes_of_a_neighbour_are_those_of_one_polynomial_in_the_axes_of_the_cell() {
             let step = 2.0 * 3f64.sqrt() * sign;
             let across = modes.number(axis, 0, 1);
             let close = |a: f64, b: f64| (a - b).abs() < 1e-14;
-            assert!(close(seen.of[0][0], modes.of[0][0] + step * modes.of[0][first]));
-            assert!(close(seen.of[0][across], modes.of[0][across] + step * modes.of[0][mixed]));
-            assert!(close(seen.of[0][first], modes.of[0][first]) && close(seen.of[0][mixed], modes.of[0][mixed]));
+            assert!(close(seen.of[0][0], modes.of[0][0] + step * modes.of[first][0]));
+            assert!(close(seen.of[across][0], modes.of[across][0] + step * modes.of[mixed][0]));
+            assert!(close(seen.of[first][0], modes.of[first][0]) && close(seen.of[mixed][0], modes.of[mixed][0]));
         }
     }
 }

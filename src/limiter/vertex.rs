@@ -58,10 +58,10 @@ fn narrow(cell: &Cell, own: &Modes, ends: [usize; 2], alpha: &mut [[f64; UNKNOWN
     let m = own.m;
     let (mut low, mut high) = (own.clone(), own.clone());
     cell.around(ends, &mut |modes| {
-        for k in 0..UNKNOWNS {
-            for (number, value) in modes.of[k][..m * m].iter().enumerate() {
-                low.of[k][number] = low.of[k][number].min(*value);
-                high.of[k][number] = high.of[k][number].max(*value);
+        for (number, values) in modes.of[..m * m].iter().enumerate() {
+            for (k, value) in values.iter().enumerate() {
+                low.of[number][k] = low.of[number][k].min(*value);
+                high.of[number][k] = high.of[number][k].max(*value);
             }
         }
     });
@@ -71,19 +71,20 @@ fn narrow(cell: &Cell, own: &Modes, ends: [usize; 2], alpha: &mut [[f64; UNKNOWN
             let scale = |i: usize, j: usize| derivative(i) * derivative(j);
             // The highest mode of all has no linear part.
             let Some(alpha) = alpha.get_mut(i + j + 1) else { continue };
-            for (k, (alpha, values)) in alpha.iter_mut().zip(&own.of).enumerate() {
-                let slope = |there: bool, number: usize| if there { values[number] } else { 0.0 };
+            for (k, alpha) in alpha.iter_mut().enumerate() {
+                let value = |number: usize| own.of[number][k];
+                let slope = |there: bool, number: usize| if there { value(number) } else { 0.0 };
                 let slopes = [slope(i + 1 < m, number + m), slope(j + 1 < m, number + 1)];
-                let size = values[..m * m].iter().fold(0.0f64, |a, b| a.max(b.abs()));
+                let size = (0..m * m).fold(0.0f64, |a, b| a.max(value(b).abs()));
                 // A derivative that is rounding says nothing.
                 if slopes.iter().all(|slope| slope.abs() <= ROUNDING * size) {
                     continue;
                 }
                 let one = slopes[0] * scale(i + 1, j) * (ends[0] as f64 - 0.5);
                 let rise = one + slopes[1] * scale(i, j + 1) * (ends[1] as f64 - 0.5);
-                let far = if rise > 0.0 { high.of[k][number] } else { low.of[k][number] };
+                let far = if rise > 0.0 { high.of[number][k] } else { low.of[number][k] };
                 if rise != 0.0 {
-                    let room = (far - values[number]) * scale(i, j) / rise;
+                    let room = (far - value(number)) * scale(i, j) / rise;
                     *alpha = alpha.min(room.clamp(0.0, 1.0));
                 }
             }

@@ -31,6 +31,27 @@ use crate::error::Error;
 use crate::mesh::{FACES, Link, Mesh};
 use crate::quadrature::legendre;
 
+/// Runs `$body` with `$nodes` bound to the constant M = N + 1: loops over the nodes of a line are unrolled. One `match` a
+/// block and kernel.
+macro_rules! with_nodes {
+    ($m:expr, $nodes:ident => $body:expr) => {
+        match $m {
+            1 => with_nodes!(@ 1, $nodes, $body),
+            2 => with_nodes!(@ 2, $nodes, $body),
+            3 => with_nodes!(@ 3, $nodes, $body),
+            4 => with_nodes!(@ 4, $nodes, $body),
+            5 => with_nodes!(@ 5, $nodes, $body),
+            6 => with_nodes!(@ 6, $nodes, $body),
+            _ => with_nodes!(@ 7, $nodes, $body),
+        }
+    };
+    (@ $value:literal, $nodes:ident, $body:expr) => {{
+        const $nodes: usize = $value;
+        $body
+    }};
+}
+pub(crate) use with_nodes;
+
 /// Nodes of a cell of the largest degree that steps are compiled for, 6.
 pub const MOST_NODES: usize = 49;
 

@@ -1,9 +1,9 @@
 //! A block in a stage of a step: what all phases ask for.
 
-use super::volume::{Masses, with_nodes};
+use super::volume::Masses;
 use super::{Law, Scheme, Stage};
 use crate::lane::F8;
-use crate::operators::{Metric, Points};
+use crate::operators::{Metric, Points, with_nodes};
 use crate::riemann::Medium;
 use crate::state::State;
 

@@ -3,10 +3,11 @@
 use super::at_points::at_points;
 use super::block_work::LawWork;
 use super::history::recall;
-use super::volume::{Masses, with_nodes};
+use super::volume::Masses;
 use super::{Scheme, Scratch, Work as Memory, dense, with_scratch};
 use crate::lane::{F8, Lanes};
 use crate::material::{Material, Past, count, virgin};
+use crate::operators::with_nodes;
 use crate::state::State;
 use crate::tensor::DEFORMATION;
 use rayon::prelude::*;

@@ -12,9 +12,9 @@
 use super::{Loss, Scheme, Survey, Work, with_scratch};
 use crate::lane::{F8, LANES, Lanes};
 use crate::mesh::FACES;
-use crate::operators::Neighbour;
+use crate::operators::{Neighbour, with_nodes};
 use crate::state::{State, UNKNOWNS};
-use crate::step::volume::{Masses, with_nodes};
+use crate::step::volume::Masses;
 use crate::tensor::{self, DEFORMATION};
 use rayon::prelude::*;
 

@@ -13,27 +13,6 @@ use crate::riemann::{Looks, tangent};
 use crate::state::UNKNOWNS;
 use crate::tensor::{self, AXES, DEFORMATION};
 
-/// Runs `$body` with `$nodes` bound to the constant M = N + 1: loops over the nodes of a line are unrolled. One `match` a
-/// block and kernel.
-macro_rules! with_nodes {
-    ($m:expr, $nodes:ident => $body:expr) => {
-        match $m {
-            1 => with_nodes!(@ 1, $nodes, $body),
-            2 => with_nodes!(@ 2, $nodes, $body),
-            3 => with_nodes!(@ 3, $nodes, $body),
-            4 => with_nodes!(@ 4, $nodes, $body),
-            5 => with_nodes!(@ 5, $nodes, $body),
-            6 => with_nodes!(@ 6, $nodes, $body),
-            _ => with_nodes!(@ 7, $nodes, $body),
-        }
-    };
-    (@ $value:literal, $nodes:ident, $body:expr) => {{
-        const $nodes: usize = $value;
-        $body
-    }};
-}
-pub(super) use with_nodes;
-
 /// Numbers of a trace: F, v, t, c_p, then c_s or u where the flux is one that looks at it, then s = P T where the balance is on
 /// (`metered`).
 pub const fn width(looks: Looks, metered: bool) -> usize {

@@ -2,8 +2,8 @@
 use super::*;
 use crate::lane::Kernel;
 use crate::mesh::{Mesh, links, rectangle};
-use crate::operators::{Needs, Operators};
-use crate::step::volume::{self, with_nodes};
+use crate::operators::{Needs, Operators, with_nodes};
+use crate::step::volume;
 
 struct Project<'a, const M: usize>(&'a Operators, &'a mut [F8]);
 
