@@ -33,7 +33,7 @@ const THRESHOLD: Parameter = Parameter::new(
 const fn rescue(default: bool) -> Parameter {
     Parameter::new(
         "rescue",
-        "whether cells that a step loses, or whose J falls below half of that of their mean F, are stepped again at order 0",
+        "whether cells that a step loses, or whose J falls below .8 of that of their mean F, are stepped again at order 0",
         "",
         Form::Boolean,
         Preset::Boolean(default),
