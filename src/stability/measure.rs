@@ -122,7 +122,7 @@ pub fn measure(setup: &Setup, questions: Questions) -> Result<Measured> {
     let mut around = angles::grid(questions.angles);
     around.push(theta);
     let (gain, definite) = (energy.largest(&rate, &around)?, energy.lowest > -DEFINITE);
-    let norms = if questions.norms { norms::norms(&rate, questions.angles) } else { None };
+    let norms = if questions.norms { norms::norms(&rate, questions.angles)? } else { None };
     // Rates in c_p/h of the unloaded law, steps in c/h of the state.
     let unit = problem.c / problem.reference;
     let courant = rate.courant;

@@ -12,6 +12,7 @@ mod norms;
 mod operator;
 mod problem;
 mod spectrum;
+mod springs;
 mod table;
 
 pub use cases::{Case, Plan, axis, values};

@@ -98,8 +98,8 @@ pub fn no_end() -> Error {
 /// As for [`worst`].
 pub fn growth_at(rate: &Rate, theta: [f64; 2]) -> Result<f64> {
     match rate.periodic {
-        true => worst(rate.symbol(theta), rate.courant),
-        false => worst(rate.matrix(), rate.courant),
+        true => worst(rate.symbol(theta)?, rate.courant),
+        false => worst(rate.matrix()?, rate.courant),
     }
 }
 
