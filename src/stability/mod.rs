@@ -17,6 +17,6 @@ mod table;
 
 pub use cases::{Case, Plan, axis, values};
 pub use energy::Energy;
-pub use measure::{Measured, Names, Questions, measure};
+pub use measure::{Limit, Measured, Names, Questions, measure};
 pub use problem::{Domain, Pattern, Problem, Setup};
 pub use table::{Row, chart, csv, lines, rows};
