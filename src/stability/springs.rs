@@ -47,10 +47,10 @@ impl Springs {
         let mut springs = Self { blocks: vec![] };
         for (row, &cell) in cells.iter().enumerate() {
             for face in 0..FACES {
-                let Some((across, held, there)) = faces.springs(cell, face) else { continue };
+                let Some((across, Sides { own, beyond })) = faces.springs(cell, face) else { continue };
                 let (offset, column) = faces.place(across);
-                springs.add([0, 0], cells.len() * n, [row * n, row * n], &held, &held, 1.0);
-                springs.add(offset, cells.len() * n, [row * n, column * n], &held, &there, -1.0);
+                springs.add([0, 0], cells.len() * n, [row * n, row * n], &own, &own, 1.0);
+                springs.add(offset, cells.len() * n, [row * n, column * n], &own, &beyond, -1.0);
             }
         }
         Some(springs)
@@ -131,6 +131,13 @@ impl<N: Number> Jumps<N> {
     }
 }
 
+/// By point of a face, the factors of the nodes of the cells on both sides in (w l K)^(1/2) h times the held trace of u; the jump is
+/// the difference of the two.
+struct Sides {
+    own: Vec<Vec<f64>>,
+    beyond: Vec<Vec<f64>>,
+}
+
 /// The faces of a problem.
 struct Faces<'a> {
     problem: &'a Problem,
@@ -144,9 +151,8 @@ impl<'a> Faces<'a> {
         Self { problem, base: problem.state.unpack(blocks, nodes) }
     }
 
-    /// The cell beyond a face between cells, and for each point the factors of the nodes of both sides in
-    /// (w l K)^(1/2) h times the jump; none at the boundary of the body.
-    fn springs(&self, cell: usize, face: usize) -> Option<(usize, Vec<Vec<f64>>, Vec<Vec<f64>>)> {
+    /// The cell beyond a face between cells, and the factors of both; none at the boundary of the body.
+    fn springs(&self, cell: usize, face: usize) -> Option<(usize, Sides)> {
         let operators = &self.problem.scheme.operators;
         let (block, lane) = operators.blocks.slot[cell];
         let (Neighbour::Cell(across) | Neighbour::Interface(across, _)) =
@@ -165,7 +171,7 @@ impl<'a> Faces<'a> {
             own.push(self.at_nodes(&operators.line.held, face, point, factor));
             beyond.push(self.at_nodes(&operators.line.held, other, opposite, factor));
         }
-        Some((there, own, beyond))
+        Some((there, Sides { own, beyond }))
     }
 
     fn opposite(across: &Across, point: usize, m: usize) -> usize {
