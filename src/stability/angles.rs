@@ -1,7 +1,7 @@
 //! The worst Bloch angles of a patch.
 
 use super::operator::Rate;
-use super::spectrum::growth_at;
+use super::spectrum;
 use crate::error::Result;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -27,7 +27,7 @@ pub fn grid(count: usize) -> Vec<[f64; 2]> {
 /// The worst of the grid, and from there by a search that halves its distance.
 ///
 /// # Errors
-/// As for [`growth_at`].
+/// As for [`spectrum::worst`].
 pub fn worst(rate: &Rate, count: usize) -> Result<At> {
     let of = |theta: [f64; 2]| growth_at(rate, theta).map(|growth| At { growth, theta });
     if !rate.periodic {
@@ -55,7 +55,7 @@ pub fn worst(rate: &Rate, count: usize) -> Result<At> {
 /// The first angles found at which the growth is above a bound: `hint` first, then the grid.
 ///
 /// # Errors
-/// As for [`growth_at`].
+/// As for [`spectrum::worst`].
 pub fn above(rate: &Rate, count: usize, bound: f64, hint: Option<[f64; 2]>) -> Result<Option<[f64; 2]>> {
     let of = |theta: [f64; 2]| growth_at(rate, theta).map(|growth| (growth > bound).then_some(theta));
     if let Some(theta) = hint
@@ -67,4 +67,15 @@ pub fn above(rate: &Rate, count: usize, bound: f64, hint: Option<[f64; 2]>) -> R
         return of([0.0; 2]);
     }
     grid(count).into_par_iter().find_map_any(|theta| of(theta).transpose()).transpose()
+}
+
+/// Growth of a rate at some Bloch angles, or of a body.
+///
+/// # Errors
+/// As for [`spectrum::worst`].
+fn growth_at(rate: &Rate, theta: [f64; 2]) -> Result<f64> {
+    match rate.periodic {
+        true => spectrum::worst(rate.symbol(theta)?, rate.courant),
+        false => spectrum::worst(rate.matrix()?, rate.courant),
+    }
 }

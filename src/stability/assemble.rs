@@ -1,8 +1,8 @@
 //! The derivative of a step of the program with respect to the state, by differences: no second code of the method.
 //!
 //! A column is sum_l w_l (step(U + l e D_j) - step(U - l e D_j)) / (2 l e D_i), central differences at the distances e, 2 e, ..
-//! that are extrapolated to 0 (Richardson): exact up to the power 2 L of e, or L where the step bends at the state. D are the units 1 of F and rho0 c_p of p. The
-//! distance is chosen by the error of the result, which is measured: far where the step is affine (the linear law), nearer
+//! that are extrapolated to 0 (Richardson): exact up to the power 2 L of e, or L where the step bends at the state. D are the units 1 of F, rho0 c_p of p and h
+//! (the smallest of the mesh) of u. The distance is chosen by the error of the result, which is measured: far where the step is affine (the linear law), nearer
 //! where the law bends.
 //!
 //! The semi-discrete operator is the limit of (S(dt) - 1) / dt: its value at 0 of the polynomial through ten small dt.
@@ -12,6 +12,7 @@ use crate::error::{Error, Result};
 use crate::state::{State, UNKNOWNS};
 use crate::step::Law;
 use crate::step::{Survey, Work};
+use crate::tensor::DEFORMATION;
 use rayon::prelude::*;
 
 /// Distances e, numbers of levels L and orders that are tried, from far to near. Rounding errs by 1e-16 / e. The law, normals
@@ -92,7 +93,11 @@ impl<'a> Assembler<'a> {
         let mut units = Vec::new();
         for (cell, &(block, _)) in blocks.slot.iter().enumerate() {
             let impedance = problem.scheme.laws[blocks.material[block]].density() * problem.speeds[cell];
-            units.extend((0..UNKNOWNS * nodes).map(|k| if k / nodes < 4 { 1.0 } else { impedance }));
+            units.extend((0..problem.per_cell()).map(|k| match k / nodes {
+                ..DEFORMATION => 1.0,
+                DEFORMATION..UNKNOWNS => impedance,
+                _ => problem.h,
+            }));
         }
         Self { problem, units, base: problem.state.unpack(blocks, nodes) }
     }

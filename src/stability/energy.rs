@@ -1,7 +1,8 @@
 //! The energy of a perturbation, and how fast it can grow.
 //!
 //! E2 = 1/2 int ( A_ijkl H_ij H_kl + |p|^2 / rho0 ) dX is the second derivative of the total energy about the state, with
-//! A = dP/dF of the law at the nodes. In the variables of [`Rate`] it is y* E y / 2 with E = diag(A / (rho0 c_p^2), 1).
+//! A = dP/dF of the law at the nodes, and the energy sum over faces of K/2 int `[u]`^2 ds of the springs where jumps of u are held. In
+//! the variables of [`Rate`] it is (y* E y + z* z) / 2 with E = diag(A / (rho0 c_p^2), 1).
 //! Rotations about an unloaded state have no energy and those of a compressed one a negative one: a growth over E2 itself has
 //! no bound as soon as such a rotation becomes strain. Measured is the largest eigenvalue of the symmetric part
 //! (E G + G* E) / 2: the most that E2 can gain in a unit of time, over the norm |y|^2 / 2, which is the kinetic energy and as
@@ -72,7 +73,8 @@ impl Energy {
         let (n, stride) = (self.nodes, crate::state::UNKNOWNS * self.nodes);
         Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
             let (cell, k, a) = (i / stride, i % stride / n, i % n);
-            if k > 3 {
+            // What stands behind F and p of all cells are the jumps of u.
+            if cell * n >= self.tangents.len() || k > 3 {
                 return matrix[(i, j)];
             }
             let row = &self.tangents[cell * n + a][k];
@@ -100,9 +102,9 @@ impl Energy {
     /// Eigenvalues that cannot be computed.
     pub fn largest(&self, rate: &Rate, angles: &[[f64; 2]]) -> Result<f64> {
         if !rate.periodic {
-            return self.growth(&rate.matrix(), rate.courant);
+            return self.growth(&rate.matrix()?, rate.courant);
         }
-        let of = |theta: &[f64; 2]| self.growth::<c64>(&rate.symbol(*theta), rate.courant);
+        let of = |theta: &[f64; 2]| self.growth::<c64>(&rate.symbol(*theta)?, rate.courant);
         let all: Vec<f64> = angles.par_iter().map(of).collect::<Result<_>>()?;
         Ok(all.into_iter().fold(f64::NEG_INFINITY, f64::max))
     }

@@ -16,6 +16,10 @@ use crate::scene::Scene;
 const TOLERANCE: [f64; 7] = [1e-6, 1e-6, 1e-6, 1e-6, 8e-6, 6e-5, 1.6e-4];
 /// Tangents of an unloaded law have eigenvalues 0 to the rounding of their differences, over rho0 c_p^2.
 const DEFINITE: f64 = 1e-9;
+/// A step so much below the known limit shows the growth of the state alone.
+const SMALL: f64 = 0.05;
+/// dt c/h from which the search begins where no limit is known.
+const UNKNOWN_LIMIT: f64 = 0.1;
 /// The limit is found to this part.
 const RESOLUTION: f64 = 1e-3;
 /// Most unknowns of a body: the matrix is full, and its eigenvalues take minutes.
@@ -59,6 +63,16 @@ impl Names {
     }
 }
 
+/// The largest stable step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// dt c/h, 0 where none is found.
+    pub courant: f64,
+    /// Whether the state grows at steps however small, by what counts as growth at `courant`: no larger step grows more than twice
+    /// as fast.
+    pub grows: bool,
+}
+
 /// What was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
@@ -76,8 +90,8 @@ pub struct Measured {
     pub radius: Option<f64>,
     /// The angles of the largest growth of a patch.
     pub theta: Option<[f64; 2]>,
-    /// The largest stable dt c/h, 0 where none is found.
-    pub limit: Option<f64>,
+    /// The largest stable dt c/h.
+    pub limit: Option<Limit>,
     /// The most that energy can gain, c_p/h, see [`super::Energy`].
     pub energy: f64,
     /// Whether the energy product is definite or at least not negative.
@@ -115,14 +129,14 @@ pub fn measure(setup: &Setup, questions: Questions) -> Result<Measured> {
     let rate = Rate::new(&problem, &how, operator)?;
     let At { growth, theta } = angles::worst(&rate, questions.angles)?;
     let limit = match questions.limit {
-        true => Some(Limit { problem: &problem, how, angles: questions.angles }.find(theta)?),
+        true => Some(Search::new(&problem, how, questions.angles)?.find(theta)?),
         false => None,
     };
     let energy = Energy::new(&problem)?;
     let mut around = angles::grid(questions.angles);
     around.push(theta);
     let (gain, definite) = (energy.largest(&rate, &around)?, energy.lowest > -DEFINITE);
-    let norms = if questions.norms { norms::norms(&rate, questions.angles) } else { None };
+    let norms = if questions.norms { norms::norms(&rate, questions.angles)? } else { None };
     // Rates in c_p/h of the unloaded law, steps in c/h of the state.
     let unit = problem.c / problem.reference;
     let courant = rate.courant;
@@ -146,17 +160,32 @@ pub fn measure(setup: &Setup, questions: Questions) -> Result<Measured> {
 }
 
 /// The search for the largest stable step.
-struct Limit<'a> {
+struct Search<'a> {
     problem: &'a Problem,
     how: Differences,
     angles: usize,
+    /// The growth at a small step, which is that of the state, c/h.
+    slow: f64,
 }
 
-impl Limit<'_> {
+impl<'a> Search<'a> {
+    fn new(problem: &'a Problem, how: Differences, angles: usize) -> Result<Self> {
+        let known = if problem.known_limit > 0.0 { problem.known_limit } else { UNKNOWN_LIMIT };
+        let rate = Rate::new(problem, &how, Operator::Step(SMALL * known))?;
+        let slow = angles::worst(&rate, angles)?.growth.max(0.0);
+        Ok(Self { problem, how, angles, slow })
+    }
+
+    /// The largest step that does not grow, or where the state grows at any step, that does not grow more than twice as fast.
+    fn find(&self, hint: [f64; 2]) -> Result<Limit> {
+        let courant = self.largest(hint)?;
+        Ok(Limit { courant, grows: self.slow > self.tolerance(courant) })
+    }
+
     /// dt c/h, 0 where a twentieth of the known limit is unstable, too.
-    fn find(&self, hint: [f64; 2]) -> Result<f64> {
+    fn largest(&self, hint: [f64; 2]) -> Result<f64> {
         let mut hint = Some(hint);
-        let known = if self.problem.known_limit > 0.0 { self.problem.known_limit } else { 0.1 };
+        let known = if self.problem.known_limit > 0.0 { self.problem.known_limit } else { UNKNOWN_LIMIT };
         let (mut stable, mut unstable) = (0.0, 0.0);
         // Outwards from the known limit.
         let mut at = known;
@@ -168,7 +197,7 @@ impl Limit<'_> {
                 unstable = at;
                 at *= if at > 0.8 * known { 0.9 } else { 0.5 };
             }
-            if unstable > 0.0 && unstable < 0.05 * known || stable > 20.0 * known {
+            if unstable > 0.0 && unstable < SMALL * known || stable > 20.0 * known {
                 return Ok(stable);
             }
         }
@@ -187,15 +216,20 @@ impl Limit<'_> {
             (stable, unstable) = (0.99 * stable, stable);
             while !self.is_stable(stable, &mut hint)? {
                 (stable, unstable) = (0.99 * stable, stable);
-                if stable < 0.05 * known {
+                if stable < SMALL * known {
                     return Ok(0.0);
                 }
             }
         }
     }
 
-    /// The growth that counts as none, c/h.
+    /// The growth that counts as stable, c/h.
     fn bound(&self, courant: f64) -> f64 {
+        self.tolerance(courant) + 2.0 * self.slow
+    }
+
+    /// The growth that counts as none, c/h.
+    fn tolerance(&self, courant: f64) -> f64 {
         TOLERANCE[self.problem.scheme.operators.degree.min(6)].ln_1p() / courant
     }
 

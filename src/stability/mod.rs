@@ -12,10 +12,11 @@ mod norms;
 mod operator;
 mod problem;
 mod spectrum;
+mod springs;
 mod table;
 
 pub use cases::{Case, Plan, axis, values};
 pub use energy::Energy;
-pub use measure::{Measured, Names, Questions, measure};
+pub use measure::{Limit, Measured, Names, Questions, measure};
 pub use problem::{Domain, Pattern, Problem, Setup};
 pub use table::{Row, chart, csv, lines, rows};

@@ -5,8 +5,8 @@ use crate::mesh::{self, Mesh};
 use crate::problem;
 use crate::registry::Value;
 use crate::scene::{Scene, Step};
-use crate::state::{State, UNKNOWNS};
-use crate::step::{Method, Scheme, Survey, Work, cfl};
+use crate::state::State;
+use crate::step::{Method, Scheme, Survey, Work};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -88,11 +88,10 @@ impl Setup {
     /// Bad input, as for a run of the scene.
     pub fn build(&self) -> Result<Problem> {
         let asked = self.scene(&self.sets)?;
-        let method = |scene: &Scene| scene.integration();
-        let known_limit = cfl::limit(&method(&asked), asked.scheme.degree);
+        let known_limit = asked.step_limit();
         let safety = match asked.scheme.step {
             Step::Safety(safety) => safety,
-            Step::Cfl(cfl) => cfl::safety_of_cfl(cfl, &method(&asked), asked.scheme.degree),
+            Step::Cfl(cfl) => cfl / ((2 * asked.scheme.degree + 1) as f64 * known_limit),
         };
         let courant = self.courant.unwrap_or(safety * known_limit);
         // With N_T = 0 every method is its limit dt -> 0 plus terms of order dt.
@@ -117,7 +116,7 @@ impl Setup {
         // A limiter has no derivative at its kinks, and takes small noise for shocks: the step without it is looked at.
         let scheme = scheme.with_corrections(vec![]).with_rescue(None);
         let mesh = body.mesh;
-        let state = without_displacement(&scheme, scene.initial_state(&mesh, &scheme)?);
+        let state = scene.initial_state(&mesh, &scheme)?;
         Problem::new(mesh, scheme, state, scene, (unit, units), (courant, known_limit))
     }
 
@@ -207,16 +206,6 @@ impl Setup {
     }
 }
 
-/// The state without the displacement. What holds its jumps ([`crate::riemann::hold`]) only exchanges energy with the springs of the
-/// faces, and a displacement without jumps is a neutral mode of its own; both are left out.
-fn without_displacement(scheme: &Scheme, state: State) -> State {
-    let (blocks, n) = (&scheme.operators.blocks, scheme.operators.nodes());
-    let all = state.unpack(blocks, n);
-    let cells: Vec<f64> = all.chunks(state.components * n).flat_map(|cell| &cell[..UNKNOWNS * n]).copied().collect();
-    let State { time, step, internal, .. } = state;
-    State { time, step, internal, ..State::pack(blocks, n, UNKNOWNS, &cells) }
-}
-
 /// The points of the cells of one unit in all units of a patch, which is the same everywhere then.
 fn repeated(cloud: &crate::cloud::Cloud, unit: [usize; 2], cells: [usize; 2]) -> crate::cloud::Cloud {
     let mut out = crate::cloud::Cloud { first: vec![0], xi: vec![] };
@@ -263,9 +252,9 @@ impl Problem {
         })
     }
 
-    /// Unknowns of a cell.
+    /// Unknowns of a cell: F, p, and u where its jumps are held.
     pub fn per_cell(&self) -> usize {
-        UNKNOWNS * self.scheme.operators.nodes()
+        self.state.components * self.scheme.operators.nodes()
     }
 
     /// The cells whose unknowns are perturbed: one unit in the middle of a patch, or all.

@@ -4,7 +4,6 @@
 //! The kernel is split off: with an orthonormal basis (N, R) of kernel and rest, G has the eigenvalues 0 and those of
 //! R* G R; so it is done again until no kernel is left.
 
-use super::operator::Rate;
 use crate::error::{Error, Result};
 use faer::traits::ComplexField;
 use faer::traits::ext::ComplexFieldExt;
@@ -90,17 +89,6 @@ pub fn no_end() -> Error {
         "the iteration for the eigenvalues of this case does not converge",
         "give a --deformation, --dt or body that differs a little, a lower --degree, or a smaller body",
     )
-}
-
-/// Growth of a rate at some Bloch angles, or of a body.
-///
-/// # Errors
-/// As for [`worst`].
-pub fn growth_at(rate: &Rate, theta: [f64; 2]) -> Result<f64> {
-    match rate.periodic {
-        true => worst(rate.symbol(theta), rate.courant),
-        false => worst(rate.matrix(), rate.courant),
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Results as rows of a table, as CSV and as a chart.
 
 use super::cases::{self, Case, NO_LAYOUT, Plan};
-use super::measure::{Measured, Questions, measure};
+use super::measure::{Limit, Measured, Questions, measure};
 use crate::chart::{Chart, Line, Marker, Scale, Stroke};
 use crate::error::Result;
 use std::f64::consts::PI;
@@ -63,17 +63,20 @@ fn columns(rows: &[Row]) -> Vec<Column> {
             out.push((key.clone(), Box::new(move |row: &Row| row.case.labels[k].1.clone())));
         }
     }
-    let mut number = |head: &str, of: fn(&Measured) -> Option<f64>| {
+    let number = |out: &mut Vec<Column>, head: &str, of: fn(&Measured) -> Option<f64>| {
         if rows.iter().any(|row| of(&row.found).is_some()) {
             out.push((head.to_owned(), Box::new(move |row: &Row| of(&row.found).map_or("-".into(), short))));
         }
     };
-    number("dt c/h", |found| found.courant);
-    number("radius - 1", |found| found.radius.map(|radius| radius - 1.0));
-    number("growth h/c_p", |found| Some(found.growth));
-    number("limit dt c/h", |found| found.limit);
-    number("angle x", |found| Some(found.theta?[0] * 180.0 / PI));
-    number("angle y", |found| Some(found.theta?[1] * 180.0 / PI));
+    number(&mut out, "dt c/h", |found| found.courant);
+    number(&mut out, "radius - 1", |found| found.radius.map(|radius| radius - 1.0));
+    number(&mut out, "growth h/c_p", |found| Some(found.growth));
+    if rows.iter().any(|row| row.found.limit.is_some()) {
+        let text = |limit: Limit| short(limit.courant) + if limit.grows { "+" } else { "" };
+        out.push(("limit dt c/h".to_owned(), Box::new(move |row: &Row| row.found.limit.map_or("-".into(), text))));
+    }
+    number(&mut out, "angle x", |found| Some(found.theta?[0] * 180.0 / PI));
+    number(&mut out, "angle y", |found| Some(found.theta?[1] * 180.0 / PI));
     let energy = |row: &Row| short(row.found.energy) + if row.found.definite { "" } else { "*" };
     out.push(("energy h/c_p".to_owned(), Box::new(energy)));
     for (k, head) in ["|S|", "|S^10|", "|S^100|"].into_iter().enumerate() {
@@ -81,12 +84,7 @@ fn columns(rows: &[Row]) -> Vec<Column> {
             out.push((head.to_owned(), Box::new(move |row: &Row| row.found.norms.map_or("-".into(), |n| short(n[k])))));
         }
     }
-    let mut number = |head: &str, of: fn(&Measured) -> Option<f64>| {
-        if rows.iter().any(|row| of(&row.found).is_some()) {
-            out.push((head.to_owned(), Box::new(move |row: &Row| of(&row.found).map_or("-".into(), short))));
-        }
-    };
-    number("noise h/c_p", |found| Some(found.noise));
+    number(&mut out, "noise h/c_p", |found| Some(found.noise));
     out
 }
 
@@ -102,6 +100,9 @@ pub fn lines(rows: &[Row]) -> Vec<String> {
     let mut out: Vec<String> = out.iter().map(|line| line.trim_end().to_owned()).collect();
     if rows.iter().any(|row| !row.found.definite) {
         out.push("* the energy of this state is indefinite: a gain alone is no fault".to_owned());
+    }
+    if rows.iter().any(|row| row.found.limit.is_some_and(|limit| limit.grows)) {
+        out.push("+ the state grows at any step; up to this step not more than twice as fast".to_owned());
     }
     out
 }
@@ -127,7 +128,7 @@ pub fn csv(rows: &[Row]) -> String {
             found.courant,
             found.radius,
             Some(found.growth),
-            found.limit,
+            found.limit.map(|limit| limit.courant),
             angles.map(|a| a[0]),
             angles.map(|a| a[1]),
             Some(found.energy),
