@@ -33,6 +33,7 @@ use crate::registry::controls::Control;
 use crate::registry::{self, Chosen, Method, Sweeps, limiters};
 pub use names::Histories;
 use origin::{Origin, Part};
+pub use quantities::MEASURES;
 pub use reference::reference;
 
 /// A whole scene.
