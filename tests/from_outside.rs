@@ -224,9 +224,13 @@ fn register() {
         let build: fn(&dgmpm::registry::Values, Option<usize>) -> Arc<dyn Source> =
             |of, _| Arc::new(Drag(of.number("rate")));
         SOURCES.add(Entry { name: "drag", about, parameters: RATE, check: ANY, build }).unwrap();
-        let make: fn(&_, &_) -> _ = |_: &_, _: &quantities::Start| Ok(Box::new(Momentum) as Box<dyn Quantity>);
-        let (unit, displacement, check) = (|_: &_| "kg/s", |_: &_| false, |_: &_, _: &_| Ok(()));
-        let build = quantities::Kind { unit, is_error: false, displacement, check, make };
+        let build = quantities::Kind {
+            unit: |_| "kg/s",
+            is_error: false,
+            displacement: |_| false,
+            check: |_, _| Ok(()),
+            make: |_, _| Ok(Box::new(Momentum)),
+        };
         QUANTITIES.add(Entry { name: "momentum", about, parameters: &[], check: ANY, build }).unwrap();
     });
 }

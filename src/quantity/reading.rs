@@ -24,12 +24,17 @@ pub enum When {
     Over(Statistic),
 }
 
+/// Two times count as equal within this share of them.
+const SAME: f64 = 1e-12;
+
 /// What is known of a quantity so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Reading {
     when: When,
     /// Its number; NaN before there is one.
     pub value: f64,
+    /// Whether a number at a time is known, or can never be: the run has begun behind it.
+    settled: bool,
     /// Time and number of the state that was taken last.
     last: Option<[f64; 2]>,
     /// int q dt, and the time that it begins at, of a mean.
@@ -39,7 +44,7 @@ pub(super) struct Reading {
 impl Reading {
     /// Before the first state.
     pub fn new(when: When) -> Self {
-        Self { when, value: f64::NAN, last: None, sum: [0.0; 2] }
+        Self { when, value: f64::NAN, settled: false, last: None, sum: [0.0; 2] }
     }
 
     /// Whether the number of the state at `time` is needed; `dt` is the step that follows, 0 at the end of the run.
@@ -48,7 +53,7 @@ impl Reading {
             When::End => dt == 0.0,
             When::Over(_) => true,
             // The last state before, and the first that is not.
-            When::At(at) => time < at && time + 1.5 * dt >= at || time >= at && self.value.is_nan(),
+            When::At(at) => !self.settled && time + 1.5 * dt >= at,
         }
     }
 
@@ -57,10 +62,15 @@ impl Reading {
         match (self.when, self.last) {
             (When::End, _) => self.value = value,
             (When::At(at), _) if time < at => {}
+            (When::At(at), None) => {
+                // A sum of steps may be a rounding behind the start.
+                self.value = if time - at <= SAME * time.abs() { value } else { f64::NAN };
+                self.settled = true;
+            }
             (When::At(at), Some([before, of_before])) => {
                 self.value = of_before + (at - before) / (time - before) * (value - of_before);
+                self.settled = true;
             }
-            (When::At(_), None) => self.value = value,
             // A state without a number, such as one without a front, does not count.
             (When::Over(Statistic::Max), _) => self.value = self.value.max(value),
             (When::Over(Statistic::Min), _) => self.value = self.value.min(value),
@@ -108,6 +118,11 @@ mod tests {
             assert!((value - expected).abs() < 1e-14, "{when:?}: {value}");
             assert!(taken <= states, "{when:?}: {taken} states");
         }
+    }
+
+    #[test]
+    fn a_run_that_begins_behind_a_time_has_no_number_for_it() {
+        assert!(reading(When::At(-0.1), |t| t).0.is_nan());
     }
 
     #[test]

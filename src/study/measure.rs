@@ -75,6 +75,17 @@ impl Measure {
         }
     }
 
+    /// What it is taken against, where `reference` is what states are compared with.
+    pub fn against(&self, reference: &str) -> String {
+        match self {
+            Self::Quantity { unit: Some(_), .. } => "0".to_owned(),
+            Self::Quantity { .. } => {
+                "the exact value where the scene has one, else Richardson's extrapolation of each series".to_owned()
+            }
+            Self::Standard | Self::L1 => reference.to_owned(),
+        }
+    }
+
     /// An error in words: `1 %`; of a quantity with a unit `2.5 cells`.
     pub fn words(&self, error: f64) -> String {
         match self {

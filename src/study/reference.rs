@@ -123,7 +123,7 @@ impl Reference {
     /// What it is, in words.
     pub fn words(&self) -> String {
         match self {
-            Self::Nothing => "nothing: quantities are extrapolated".to_owned(),
+            Self::Nothing => "nothing, as none was asked for".to_owned(),
             Self::Exact(_) => "the exact solution".to_owned(),
             Self::Run(finer) => {
                 let own = match finer.error {

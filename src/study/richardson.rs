@@ -7,6 +7,8 @@ use std::fmt;
 
 /// Differences below this share of the values are rounding.
 const ROUNDING: f64 = 1e-12;
+/// Meshes whose sizes differ by less than this factor tell no order: noise would be taken for it.
+const APART: f64 = 1.2;
 /// The smallest order that is believed.
 const SLOWEST: f64 = 0.25;
 /// Where the search for an order ends.
@@ -47,7 +49,7 @@ pub enum Doubt {
 impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::TooFew => write!(f, "needs three meshes"),
+            Self::TooFew => write!(f, "needs three meshes, each finer by a factor of {APART} or more"),
             Self::NoNumber => write!(f, "a value is missing"),
             Self::Oscillates([a, b]) => write!(f, "does not converge: the last differences are {a:.1e} and {b:.1e}"),
             Self::DoesNotFall([a, b]) => {
@@ -75,12 +77,19 @@ pub fn order(half: (f64, f64), quarter: (f64, f64), [mut low, mut high]: [f64; 2
     low
 }
 
-/// The limit of `values`, pairs of h in any unit and q, by falling h, of a method of degree N: from the last three.
+/// The limit of `values`, pairs of h in any unit and q, by falling h, of a method of degree N: from the finest and the next two coarser ones
+/// that are each coarser by a factor of at least [`APART`].
 ///
 /// # Errors
 /// Values that do not converge, or are too few.
 pub fn estimate(values: &[(f64, f64)], degree: usize) -> Result<Estimate, Doubt> {
-    let [.., (h1, q1), (h2, q2), (h3, q3)] = *values else { return Err(Doubt::TooFew) };
+    let mut apart: Vec<(f64, f64)> = Vec::new();
+    for &(h, q) in values.iter().rev() {
+        if apart.last().is_none_or(|(finer, _)| h >= APART * finer) {
+            apart.push((h, q));
+        }
+    }
+    let [(h3, q3), (h2, q2), (h1, q1), ..] = apart[..] else { return Err(Doubt::TooFew) };
     if ![q1, q2, q3].iter().all(|q| q.is_finite()) {
         return Err(Doubt::NoNumber);
     }
@@ -131,6 +140,13 @@ mod tests {
         let mut values = series(&[4.0, 2.0, 1.0], |h| 1.0 + h);
         values.insert(0, (8.0, -50.0));
         assert!((estimate(&values, 1).unwrap().limit - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn meshes_of_nearly_one_size_do_not_make_an_order() {
+        let noisy = [(4.0, 5.0), (2.0, 3.0), (1.02, 2.0202), (1.01, 1.99), (1.0, 2.0)];
+        assert!((estimate(&noisy, 1).unwrap().limit - 1.0).abs() < 1e-9);
+        assert_eq!(estimate(&noisy[2..], 1), Err(Doubt::TooFew));
     }
 
     #[test]

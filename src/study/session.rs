@@ -82,7 +82,7 @@ impl<'a> Session<'a> {
         };
         let head = vec![
             format!("problem: {}", scene.title),
-            format!("error: {}, against {}", plan.measure.label(), reference.words()),
+            format!("error: {}, against {}", plan.measure.label(), plan.measure.against(&reference.words())),
             format!("machine: {}", machine(Kernel::widest())),
         ];
         head.iter().for_each(|line| say(line));
