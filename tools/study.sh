@@ -24,9 +24,9 @@ for part in "${parts[@]}"; do
         study meshes/wall_impact.toml wall_impact --refine 0.5,1,2
         ;;
     hard)
-        study meshes/hard/impact.toml hard_impact --degrees 1,2 --refine 0.5,1,1.5 --measure kinetic_energy
+        study meshes/hard/impact.toml hard_impact --degrees 1,2 --refine 1,2,3 --measure kinetic_energy
         study meshes/hard/taylor_copper.toml hard_taylor --degrees 1,2 --refine 0.5,1,1.5 --measure final_length --set limiter.kind=off
-        study meshes/hard/plate_hole.toml hard_plate --degrees 1,2 --refine 1,2,3 --measure hole_width
+        study meshes/hard/plate_hole.toml hard_plate --methods ader-dgfem,ader-dgmpm --degrees 1,2 --refine 1,2,3 --measure hole_width
         ;;
     *)
         echo "there is no part $part: give smooth, hard, or nothing for both" >&2

@@ -2,7 +2,7 @@
 
 use super::outputs::{field_names, has, known_fields};
 use super::{ANY, Chosen, Entry, FINITE, Fault, Field, Form, Parameter, Preset, Table, Values, quoted};
-use crate::error::Result;
+use crate::error;
 use crate::exact::Exact;
 use crate::mesh::Mesh;
 use crate::names::did_you_mean;
@@ -14,6 +14,8 @@ use crate::quantity::{
 use crate::step::Law;
 use std::sync::Arc;
 
+pub use crate::quantity::{Statistic, When};
+
 /// What there is to know of a quantity.
 pub struct Kind {
     /// Its unit; empty for a pure number.
@@ -23,9 +25,9 @@ pub struct Kind {
     /// Whether it needs the displacement.
     pub displacement: fn(&Values) -> bool,
     /// Whether the mesh has what it looks at.
-    pub check: fn(&Values, &Mesh) -> std::result::Result<(), Fault>,
+    pub check: fn(&Values, &Mesh) -> Result<(), Fault>,
     /// Makes it.
-    pub make: fn(&Values, &Start) -> Result<Box<dyn Quantity>>,
+    pub make: fn(&Values, &Start) -> error::Result<Box<dyn Quantity>>,
 }
 
 /// What a quantity is made for.
@@ -307,12 +309,12 @@ fn samples(of: &Values) -> Samples {
 }
 
 /// A fault of places at their keys.
-fn place<T>(found: std::result::Result<T, Outside>, keys: [&str; 2]) -> std::result::Result<(), Fault> {
+fn place<T>(found: Result<T, Outside>, keys: [&str; 2]) -> Result<(), Fault> {
     found.map(|_| ()).map_err(|outside| Fault::new(outside.key(keys), outside.to_string(), Outside::REMEDY))
 }
 
 /// `from` and `to` are two points.
-fn two_points(of: &Values) -> std::result::Result<(), Fault> {
+fn two_points(of: &Values) -> Result<(), Fault> {
     let [from, to] = ends(of);
     match from == to {
         true => Err(Fault::new("to", "`from` and `to` are the same point", "give two points")),
@@ -321,13 +323,7 @@ fn two_points(of: &Values) -> std::result::Result<(), Fault> {
 }
 
 /// Whether the two numbers of a key, where it is given, are what they must be to each other.
-fn differ(
-    of: &Values,
-    key: &str,
-    fit: fn(f64, f64) -> bool,
-    what: &str,
-    remedy: &str,
-) -> std::result::Result<(), Fault> {
+fn differ(of: &Values, key: &str, fit: fn(f64, f64) -> bool, what: &str, remedy: &str) -> Result<(), Fault> {
     if !of.has(key) {
         return Ok(());
     }
@@ -336,7 +332,7 @@ fn differ(
 }
 
 /// The number of the boundary group in a mesh.
-fn group(of: &Values, mesh: &Mesh) -> std::result::Result<usize, Fault> {
+fn group(of: &Values, mesh: &Mesh) -> Result<usize, Fault> {
     let (name, known) = (of.text("group"), mesh.edge_groups.iter().map(String::as_str).collect::<Vec<_>>());
     known.iter().position(|known| *known == name).ok_or_else(|| {
         let remedy = format!("{}its groups of boundary edges are {}", did_you_mean(name, &known), known.join(", "));
@@ -364,7 +360,7 @@ fn component(of: &Values) -> Component {
 }
 
 /// Whether the field has the component.
-fn check_component(of: &Values) -> std::result::Result<(), Fault> {
+fn check_component(of: &Values) -> Result<(), Fault> {
     let Some(field) = field_of(of).filter(|_| maybe_component(of).is_none()) else { return Ok(()) };
     let (name, known) = (field.name(), Component::names(field));
     let remedy = match known[..] {
@@ -389,7 +385,7 @@ fn shows_displacement(of: &Values) -> bool {
 ///
 /// # Errors
 /// A field that they lack.
-pub fn check_field(quantity: &Chosen<Kind>, laws: &[Law]) -> std::result::Result<(), Fault> {
+pub fn check_field(quantity: &Chosen<Kind>, laws: &[Law]) -> Result<(), Fault> {
     match field_of(&quantity.values).filter(|field| !field.is_of(laws)) {
         None => Ok(()),
         Some(field) => {

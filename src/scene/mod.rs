@@ -28,7 +28,6 @@ use toml_edit::{Document, DocumentMut};
 
 use crate::error::{Error, Place, Result};
 use crate::expression::Expression;
-use crate::quantity;
 use crate::registry::controls::Control;
 use crate::registry::{self, Chosen, Method, Sweeps, limiters};
 pub use names::Histories;
@@ -230,7 +229,7 @@ pub struct Quantity {
     /// What.
     pub what: Chosen<registry::quantities::Kind>,
     /// When.
-    pub when: quantity::When,
+    pub when: registry::quantities::When,
 }
 
 /// When something is recorded.

@@ -5,8 +5,8 @@ use super::reader::Reader;
 use super::tables::{OVER, QUANTITY};
 use super::{Material, Quantity};
 use crate::error::Result;
-use crate::quantity::{Statistic, When};
-use crate::registry::{QUANTITIES, Values, quantities};
+use crate::registry::quantities::{self, Statistic, When};
+use crate::registry::{QUANTITIES, Values};
 
 /// What a study measures besides quantities: no quantity can have these names.
 pub const MEASURES: [&str; 2] = ["standard", "l1"];

@@ -2,7 +2,7 @@
 //! [`crate::registry`], with its entry.
 
 use super::Histories;
-use crate::quantity::Statistic;
+use crate::registry::quantities::Statistic;
 use crate::registry::{
     AT_LEAST_1, Check, FINITE, FLUXES, Form, METHODS, NOT_NEGATIVE, POSITIVE, Parameter, Policy, Preset, SHARE, Sweeps,
     controls, fluxes,

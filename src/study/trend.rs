@@ -46,13 +46,13 @@ impl Limit {
     pub fn words(&self) -> String {
         match self {
             Self::Zero => "is an error itself".to_owned(),
-            Self::Exact(limit) => format!("exact {limit:.6e}"),
+            Self::Exact(limit) => format!("exact {}", number_words(*limit)),
             Self::Extrapolated(Err(doubt)) => doubt.to_string(),
             Self::Extrapolated(Ok(Estimate { limit, order: None, .. })) => {
-                format!("the same on all meshes, {limit:.6e}")
+                format!("the same on all meshes, {}", number_words(*limit))
             }
             Self::Extrapolated(Ok(Estimate { limit, order: Some(order), .. })) => {
-                format!("order {order:.2}, extrapolated {limit:.6e}")
+                format!("order {order:.2}, extrapolated {}", number_words(*limit))
             }
         }
     }
@@ -182,7 +182,25 @@ pub fn markdown(records: &[Record], scene: &Scene) -> String {
     text
 }
 
-/// A value of a table; `none` where there is no number.
+/// A value of a table to six digits; `none` where there is no number.
 fn number_words(value: f64) -> String {
-    if value.is_nan() { "none".to_owned() } else { format!("{value:.5e}") }
+    match value.abs() {
+        size if size.is_nan() => "none".to_owned(),
+        size if (1e-3..1e5).contains(&size) => {
+            let digits = 5 - size.log10().floor() as i32;
+            format!("{value:.0$}", digits.max(0) as usize)
+        }
+        _ => format!("{value:.5e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number_words;
+
+    #[test]
+    fn numbers_of_usual_size_stand_without_a_power_of_ten() {
+        let found = [0.0023456789, 2.5, 12345.678, -9.2365e9, 1e-4, f64::NAN].map(number_words);
+        assert_eq!(found, ["0.00234568", "2.50000", "12345.7", "-9.23650e9", "1.00000e-4", "none"]);
+    }
 }
