@@ -118,8 +118,9 @@ fn places_are_found_again_on_another_grid() {
     for found in [&once, &again] {
         assert!((found["v"].as_f64().unwrap() + 50.0).abs() < 2.5, "{found}");
     }
-    // Finer cells after half of the way: a steeper front, and a peak of the same size.
-    assert!(again["width"].as_f64().unwrap() < once["width"].as_f64().unwrap(), "{once} {again}");
+    // The front stays about as wide as the coarse cells have made it; the peak keeps its size.
+    let [a, b] = [&once, &again].map(|found| found["width"].as_f64().unwrap());
+    assert!((b / a - 1.0).abs() < 0.5, "{a} {b}");
     let [a, b] = [&once, &again].map(|found| 1.0 - found["j"].as_f64().unwrap());
     assert!(a > 0.0 && (b / a - 1.0).abs() < 0.5, "{a} {b}");
 }
