@@ -26,7 +26,8 @@ for part in "${parts[@]}"; do
     hard)
         study meshes/hard/impact.toml hard_impact --degrees 1,2 --refine 1,2,3 --measure kinetic_energy
         study meshes/hard/taylor_copper.toml hard_taylor --degrees 1,2 --refine 0.5,1,1.5 --measure final_length --set limiter.kind=off
-        study meshes/hard/plate_hole.toml hard_plate --methods ader-dgfem,ader-dgmpm --degrees 1,2 --refine 1,2,3 --measure hole_width
+        study meshes/hard/taylor_copper.toml hard_taylor_limited --methods ader-dgmpm --degrees 1,2 --refine 0.5,1,1.5 --measure final_length
+        study meshes/hard/plate_hole.toml hard_plate --methods ader-dgmpm --degrees 1,2 --refine 1,2,3 --measure wall_force
         ;;
     *)
         echo "there is no part $part: give smooth, hard, or nothing for both" >&2

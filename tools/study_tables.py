@@ -9,7 +9,12 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 PARTS = {
     "smooth": ["simple_wave", "smooth_box", "wall_impact"],
-    "hard": ["hard_impact", "hard_taylor", "hard_plate"],
+    "hard": ["hard_impact", "hard_taylor", "hard_taylor_limited", "hard_plate"],
+}
+# What tells problems of one title apart.
+NAMES = {
+    "hard_taylor": ", without limiter",
+    "hard_taylor_limited": ", with limiter",
 }
 
 
@@ -49,7 +54,7 @@ def failures(folder: Path) -> str:
 def section(folder: Path, name: str, images: str) -> str:
     """Table, answers, quantities and plot of one problem."""
     study = json.loads((folder / name / "study.json").read_text())
-    parts = [f"### {study['title']}", "; ".join(study["head"][1:]) + "."]
+    parts = [f"### {study['title']}{NAMES.get(name, '')}", "; ".join(study["head"][1:]) + "."]
     if study["answers"]:
         parts += [(folder / name / "table.md").read_text().strip(), answers(study)]
     quantities = folder / name / "quantities.md"

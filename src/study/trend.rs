@@ -172,7 +172,7 @@ pub fn markdown(records: &[Record], scene: &Scene) -> String {
             let values: Vec<String> = trend.values.iter().map(|(_, value)| number_words(*value)).collect();
             let error = trend.error().map_or(String::new(), |error| match trend.limit {
                 Limit::Zero => number_words(error),
-                _ => format!("{:.2} %", 100.0 * error),
+                _ => format!("{error:.1e}"),
             });
             text +=
                 &format!("| {} | {} | {} | {error} |\n", trend.series.name(), values.join(", "), trend.limit.words());
