@@ -64,7 +64,7 @@
 //!
 //! Data flows mesh, cloud, operators, state, step, output. The order of the modules below is the order of dependency: a
 //! module uses only those above it (`tests/layers.rs` holds this). [`Scheme`] is read-only, [`State`] is all that changes.
-//! A new law, flux, boundary condition, source, solution, output, grid, layout or limiter is one file and one entry of [`registry`]
+//! A new law, flux, boundary condition, source, solution, output, quantity, grid, layout or limiter is one file and one entry of [`registry`]
 //! (`docs/extend.md`). The modules are private: what a user needs stands on the page of `pub use` below.
 
 #![deny(missing_docs)]
@@ -95,6 +95,7 @@ mod chart;
 mod observe;
 mod run;
 mod exact;
+mod quantity;
 mod expression;
 pub mod registry;
 mod scene;
@@ -133,6 +134,9 @@ pub use step::{Balance, Corrected, Correction, Flux, Law, Made, Notes, Rescue};
 
 // Exact solutions and errors.
 pub use exact::{Errors, Exact, Norms, errors};
+
+// Quantities of interest.
+pub use quantity::{Quantity, Seen};
 
 /// The command line, `dgmpm ..`. A program that adds to [`registry`] first has it with laws, conditions and sources of its own.
 pub use cli::main;
@@ -204,6 +208,9 @@ pub mod parts {
     }
     pub mod exact {
         pub use crate::exact::*;
+    }
+    pub mod quantity {
+        pub use crate::quantity::*;
     }
     pub mod expression {
         pub use crate::expression::*;

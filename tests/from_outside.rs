@@ -1,12 +1,14 @@
 //! What a crate that uses dgmpm may add, with its own types and the public surface alone: a law with memory and rate, a flux, a
-//! condition with memory, a source that sees the velocity, a correction. Each is an entry of the registry (a correction: of the
+//! condition with memory, a source that sees the velocity, a quantity, a correction. Each is an entry of the registry (a correction: of the
 //! problem), named by a scene, run by the three methods and held to what is known.
 
 use dgmpm::registry::conditions::Condition;
-use dgmpm::registry::{ANY, CONDITIONS, Entry, FINITE, FLUXES, Form, LAWS, POSITIVE, Parameter, SOURCES, fluxes};
+use dgmpm::registry::{
+    ANY, CONDITIONS, Entry, FINITE, FLUXES, Form, LAWS, POSITIVE, Parameter, QUANTITIES, SOURCES, fluxes, quantities,
+};
 use dgmpm::{
     Boundary, Corrected, Correction, FacePoint, Flux, Folder, Lane, Law, Looks, Made, Material, Medium, Moment, Past,
-    Problem, Rank, Riemann, Rusanov, Scene, Setup, Source, Trace, Variable, star,
+    Problem, Quantity, Rank, Riemann, Rusanov, Scene, Seen, Setup, Source, Trace, Variable, star,
 };
 use std::path::Path;
 use std::sync::{Arc, Once};
@@ -194,6 +196,15 @@ const MAXWELL: &[Parameter] = &[
     Parameter::required("density", "rho0", "kg/m^3", Form::Number(POSITIVE)),
 ];
 
+/// int p_1 dX.
+struct Momentum;
+
+impl Quantity for Momentum {
+    fn of(&self, seen: &Seen) -> f64 {
+        seen.totals().momentum[0]
+    }
+}
+
 /// Adds all of it once a program.
 fn register() {
     static ONCE: Once = Once::new();
@@ -213,6 +224,14 @@ fn register() {
         let build: fn(&dgmpm::registry::Values, Option<usize>) -> Arc<dyn Source> =
             |of, _| Arc::new(Drag(of.number("rate")));
         SOURCES.add(Entry { name: "drag", about, parameters: RATE, check: ANY, build }).unwrap();
+        let build = quantities::Kind {
+            unit: |_| "kg/s",
+            is_error: false,
+            displacement: |_| false,
+            check: |_, _| Ok(()),
+            make: |_, _| Ok(Box::new(Momentum)),
+        };
+        QUANTITIES.add(Entry { name: "momentum", about, parameters: &[], check: ANY, build }).unwrap();
     });
 }
 
@@ -332,9 +351,14 @@ fn the_memory_of_a_condition_goes_through_snapshots_and_regrids() {
 #[test]
 fn a_drag_from_outside_slows_a_free_body_as_its_exponential() {
     for method in METHODS {
-        let drag = "[initial]\nvelocity = [\"1\", \"0.5\"]\n[[source]]\nkind = \"drag\"\nrate = 2.0\n";
+        let drag = "[initial]\nvelocity = [\"1\", \"0.5\"]\n[[source]]\nkind = \"drag\"\nrate = 2.0\n\
+                    [[quantity]]\nname = \"p\"\nkind = \"momentum\"\n";
         let mut problem = Problem::new(&scene(method, RUBBER, [FREE; 4], 1.0, drag)).unwrap();
-        problem.run().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        problem.run_in(&Folder::new(folder.path())).unwrap();
+        let summary = std::fs::read_to_string(folder.path().join("summary.json")).unwrap();
+        let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+        assert_eq!(summary["quantities"]["p"], summary["momentum"][0], "{method}");
         let momentum = problem.scheme.totals(&problem.state).momentum;
         for (found, start) in momentum.into_iter().zip([1.0, 0.5]) {
             let error = found / start / (-2.0_f64).exp() - 1.0;

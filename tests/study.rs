@@ -120,6 +120,105 @@ fn a_mesh_file_is_refined_by_cutting_its_cells() {
 }
 
 #[test]
+fn at_a_shock_the_l1_error_falls_faster_than_the_standard_one_and_the_front_stays_as_narrow_in_cells() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "from=[0.0,0.05],to=[3.0,0.05]";
+    let quantities = format!(
+        r#"quantity=[{{name="width",kind="front-width",{line}}},{{name="over",kind="overshoot",{line}}},{{name="v",kind="value",at=[0.5,0.05],field="velocity",component="1"}}]"#
+    );
+    let fixed = "--methods ader-dgmpm --degrees 1 --refine 1,2 --measure l1 --set limiter.kind=moment";
+    let mesh = "mesh.rectangle={size=[3.0,0.1],cells=[30,1]}";
+    let options = format!("{fixed} --set {quantities} --set {mesh} --set output=[]");
+    let said = study(&scene("wall_impact.toml"), folder.path(), &options).unwrap();
+    assert!(said.contains("relative error (L1)") && said.contains("is an error itself"), "{said}");
+    let rate = |name: &str| {
+        let error = numbers(folder.path(), name);
+        (error[0] / error[1]).log2()
+    };
+    // 1/2 and 1 are the rates at a jump; on meshes this coarse within a quarter.
+    assert!(
+        (rate("error") - 0.5).abs() < 0.25 && (rate("error_l1") - 1.0).abs() < 0.25,
+        "{} {}",
+        rate("error"),
+        rate("error_l1")
+    );
+    let width = numbers(folder.path(), "quantity_width");
+    assert!(
+        width.iter().all(|cells| (1.0..4.0).contains(cells)) && (width[1] / width[0] - 1.0).abs() < 0.3,
+        "{width:?}"
+    );
+    // What is an error itself has its value for its error; the limiter leaves little of the 20 % without it.
+    let over = numbers(folder.path(), "quantity_over");
+    assert!(
+        over == numbers(folder.path(), "quantity_over_error") && over.iter().all(|share| *share < 0.05),
+        "{over:?}"
+    );
+    // Behind the shock the body is at rest: an error by the size of what is exact, 0, is absolute, m/s of 200 m/s.
+    let v = numbers(folder.path(), "quantity_v_error");
+    assert!(v.iter().all(|v| *v < 2.0), "{v:?}");
+}
+
+/// The smooth box on 4, 8 and 16 cells, with quantities.
+fn smooth_box_with_quantities(folder: &Path) -> PathBuf {
+    let kinetic = "name = \"kinetic\"\nkind = \"energy\"\npart = \"kinetic\"";
+    let force = "name = \"force\"\nkind = \"force\"\ngroup = \"right\"\nover = \"run\"\nstatistic = \"mean\"";
+    Body::smooth_box(8).table("[quantity]", kinetic).table("[quantity]", force).write(folder, "box")
+}
+
+fn json(out: &Path) -> serde_json::Value {
+    serde_json::from_str(&std::fs::read_to_string(out.join("study.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn where_nothing_exact_is_known_three_meshes_tell_the_error_of_a_quantity() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, out) = (smooth_box_with_quantities(folder.path()), folder.path().join("out"));
+    let options = "--methods rk-dgfem --degrees 2 --refine 0.5,1,2 --measure kinetic";
+    let said = study(&scene, &out, options).unwrap();
+    // No reference run is made for it.
+    assert!(said.contains("Richardson's extrapolation") && said.contains("extrapolated "), "{said}");
+    assert!(column(&out, "error").iter().all(String::is_empty));
+    let (value, error) = (numbers(&out, "quantity_kinetic"), numbers(&out, "quantity_kinetic_error"));
+    // A run of degree 5 on 8 x 8 cells stands for the limit: its error is far below.
+    let fine = folder.path().join("fine");
+    study(&scene, &fine, "--methods rk-dgfem --degrees 5 --refine 1 --measure kinetic").unwrap();
+    let limit = numbers(&fine, "quantity_kinetic")[0];
+    for (value, error) in value.iter().zip(&error) {
+        let true_error = (value / limit - 1.0).abs();
+        // The order of three meshes is that of none of them to more than a few tenths.
+        assert!((0.5..2.0).contains(&(error / true_error)), "{error:e} {true_error:e}");
+    }
+    let all = json(&out);
+    let series = &all["quantities"][0]["series"][0];
+    // N + 1 and more for an integral of a smooth solution.
+    assert!(all["measure"] == "kinetic" && series["order"].as_f64().unwrap() > 2.5, "{series}");
+    let table = std::fs::read_to_string(out.join("quantities.md")).unwrap();
+    assert!(table.contains("| kinetic, J/m |") && table.contains("| force, N/m |"), "{table}");
+    let svg = std::fs::read_to_string(out.join("error_over_seconds.svg")).unwrap();
+    assert!(svg.contains("relative error of kinetic"));
+}
+
+#[test]
+fn a_setting_is_chosen_for_the_error_of_a_quantity() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, out) = (smooth_box_with_quantities(folder.path()), folder.path().join("out"));
+    let options = "--methods rk-dgfem,ader-dgfem --degrees 2 --refine 0.25,0.5,1 --measure kinetic --error 1e-4";
+    study(&scene, &out, options).unwrap();
+    let all = json(&out);
+    let last = all["tries"].as_array().unwrap().last().unwrap();
+    assert!(last["met"].as_bool().unwrap() && last["found"]["error"].as_f64().unwrap() <= 1e-4, "{last}");
+    // Two meshes tell nothing: one message, no plot that would show nothing.
+    let few = folder.path().join("few");
+    let two = "--methods rk-dgfem --degrees 2 --refine 0.5,1 --measure kinetic";
+    let (code, message) = study(&scene, &few, &format!("{two} --error 1e-4")).unwrap_err();
+    assert!(code == 2 && message.contains("needs three meshes") && message.contains("--refine"), "{message}");
+    let said = study(&scene, &few, &format!("{two} --force")).unwrap();
+    assert!(said.contains("no plot") && !few.join("error_over_seconds.svg").exists(), "{said}");
+    let (code, message) = study(&scene, &few, "--measure kinetik --force").unwrap_err();
+    assert!(code == 2 && message.contains("did you mean `kinetic`?") && message.contains("l1"), "{message}");
+}
+
+#[test]
 fn bad_options_are_refused_and_results_kept() {
     let folder = tempfile::tempdir().unwrap();
     let scene = scene("manufactured.toml");

@@ -83,8 +83,8 @@ impl Field {
         }
     }
 
-    /// Suffixes of its components.
-    fn suffixes(self) -> &'static [&'static str] {
+    /// Suffixes of its components, such as `_11`; an empty one of a field of one component.
+    pub fn suffixes(self) -> &'static [&'static str] {
         match self {
             Field::Velocity | Field::Displacement => &["_1", "_2"],
             Field::Deformation => &["_11", "_12", "_21", "_22"],

@@ -28,11 +28,17 @@ pub struct Line {
     material: Vec<usize>,
 }
 
-struct Sample {
-    s: f64,
-    x: [f64; 2],
-    cell: usize,
-    xi: [f64; 2],
+/// A sample of a line in the mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// How far along the line it lies, m.
+    pub s: f64,
+    /// Its position, m.
+    pub x: [f64; 2],
+    /// Its cell.
+    pub cell: usize,
+    /// Its parent coordinates there.
+    pub xi: [f64; 2],
 }
 
 impl Line {
@@ -81,7 +87,11 @@ impl Samples {
         self.locate(mesh).map(|_| ())
     }
 
-    fn locate(&self, mesh: &Mesh) -> Result<Vec<Sample>, Outside> {
+    /// Finds the cells of all samples.
+    ///
+    /// # Errors
+    /// The first sample outside the mesh.
+    pub fn locate(&self, mesh: &Mesh) -> Result<Vec<Sample>, Outside> {
         let locator = Locator::new(mesh);
         let [from, to] = self.ends;
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);

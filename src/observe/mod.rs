@@ -11,7 +11,7 @@ mod solution;
 
 pub use fields::Field;
 pub use ledger::{Contents, Ledger};
-pub use line::{Line, Outside, Samples};
+pub use line::{Line, Outside, Sample, Samples};
 pub use schedule::{Schedule, When};
 pub use snapshots::{Snapshots, take, write};
 pub use solution::{Point, Solution};

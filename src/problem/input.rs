@@ -11,12 +11,13 @@ use crate::run::Folder;
 use crate::scene::Scene;
 use std::path::Path;
 
-/// Checks what a run of the scene will ask for later: the places of its lines, its later grids and a file of `operators`.
+/// Checks what a run of the scene will ask for later: the places of its lines and quantities, its later grids and a file of `operators`.
 ///
 /// # Errors
 /// Bad input, with its place.
 pub fn check_run(scene: &Scene, body: &Body, operators: Option<&Path>) -> Result<()> {
     scene.check_lines(&body.mesh)?;
+    scene.check_quantities(&body.mesh)?;
     scene.check_regrids(&body.mesh)?;
     match operators.filter(|path| !path.exists()) {
         Some(missing) => Err(Error::at(Place::file(missing), "there is no such file", "make it by `dgmpm preprocess`")),

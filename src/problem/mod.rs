@@ -33,6 +33,7 @@ pub mod notices;
 mod outcome;
 mod outputs;
 mod points;
+mod quantities;
 mod rebuild;
 mod record;
 pub mod room;

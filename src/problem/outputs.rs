@@ -7,18 +7,19 @@ use crate::observe::{Contents, Field, Observer, Schedule};
 use crate::registry::outputs::{Recording, fields_of};
 use crate::registry::{Chosen, OUTPUTS, defaults};
 use crate::run::Folder;
-use crate::scene::{Output, Scene, When};
+use crate::scene::{Output, Quantity, Scene, When};
 use crate::state::UNKNOWNS;
 
 impl Scene {
-    /// Whether an output asks for the displacement: as a field, or for the angular momentum of a ledger.
+    /// Whether an output or a quantity asks for the displacement: as a field, for the angular momentum of a ledger, for a length.
     pub fn wants_displacement(&self) -> bool {
         let laws = self.laws();
         let wants = |output: &Output| {
             let shown = fields_of(&output.what, &laws).contains(&Field::Displacement);
             shown || (output.what.build().displacement)(&output.what.values)
         };
-        self.outputs.iter().any(wants)
+        let needs = |quantity: &Quantity| (quantity.what.build().displacement)(&quantity.what.values);
+        self.outputs.iter().any(wants) || self.quantities.iter().any(needs)
     }
 
     /// The fields that an output shows.
@@ -26,7 +27,7 @@ impl Scene {
         fields_of(&output.what, &self.laws())
     }
 
-    /// Components of the state: with the displacement where an output asks for it or the flux looks at it.
+    /// Components of the state: with the displacement where an output or a quantity asks for it or the flux looks at it.
     pub(super) fn components(&self) -> usize {
         if self.wants_displacement() { UNKNOWNS + 2 } else { (self.scheme.flux.build().make)().components() }
     }

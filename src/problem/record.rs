@@ -28,13 +28,22 @@ impl Problem {
         look: impl FnOnce(&Outcome, bool),
     ) -> (Report, Result<()>) {
         let mut report = Report::default();
-        let ended = self.observers(folder).map_err(Into::into).and_then(|mut observers| {
-            observers.extend(more);
+        let mut gauge = None;
+        let ready = self.observers(folder).and_then(|observers| {
+            gauge = self.gauge()?;
+            Ok(observers)
+        });
+        let ended = ready.map_err(Into::into).and_then(|observers| {
+            let mut observers: Vec<Box<dyn Observer + '_>> =
+                observers.into_iter().map(|observer| observer as _).collect();
+            observers.extend(more.into_iter().map(|observer| observer as Box<dyn Observer>));
+            observers.extend(gauge.as_mut().map(|gauge| Box::new(gauge) as Box<dyn Observer + '_>));
             self.solve(Solve { folder: Some(folder), observers, interrupt }, &mut report)
         });
         let Ended { status, loss, result } = Ended::of(ended, self, &report, folder);
         report.finish(&self.scheme, &self.state);
-        let outcome = Outcome::new(self, &report);
+        let quantities = gauge.map(|gauge| gauge.measured()).unwrap_or_default();
+        let outcome = Outcome { quantities, ..Outcome::new(self, &report) };
         look(&outcome, result.is_ok());
         let written = outcome.write(folder, status, loss);
         (report, result.and(written))

@@ -4,6 +4,7 @@ use super::Problem;
 use crate::error::Result;
 use crate::exact::{Errors, Exact, errors};
 use crate::format::{Row, row};
+use crate::quantity::Measured;
 use crate::run::{Folder, Report, norms};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -16,6 +17,8 @@ pub struct Outcome<'a> {
     pub report: &'a Report,
     /// Errors, where the scene names an exact solution.
     pub errors: Option<Errors>,
+    /// The quantities that the scene names.
+    pub quantities: Vec<Measured>,
 }
 
 impl<'a> Outcome<'a> {
@@ -23,7 +26,7 @@ impl<'a> Outcome<'a> {
     pub fn new(problem: &'a Problem, report: &'a Report) -> Self {
         let Problem { scene, body, scheme, state, .. } = problem;
         let of = |exact: Arc<dyn Exact>| errors(exact.as_ref(), &body.mesh, scheme, state, &body.material);
-        Self { problem, report, errors: scene.build_exact().map(of) }
+        Self { problem, report, errors: scene.build_exact().map(of), quantities: vec![] }
     }
 
     /// What the run cost, what became of energy and momentum, and the errors, as rows of a table.
@@ -35,6 +38,11 @@ impl<'a> Outcome<'a> {
                 rows.push(row(format!("error of {name}"), text));
             }
             rows.push(row("standard error", format!("{:.4e}", errors.standard)));
+            rows.push(row("standard error in L1", format!("{:.4e}", errors.standard_l1)));
+        }
+        for Measured { name, unit, value, .. } in &self.quantities {
+            let text = if value.is_nan() { "none".to_owned() } else { format!("{value:.6e} {unit}") };
+            rows.push(row(name, text.trim_end()));
         }
         rows.push(row("instruction set", format!("{:?}", self.problem.scheme.kernel)));
         rows
@@ -49,6 +57,10 @@ impl<'a> Outcome<'a> {
         let mut all = self.report.json(scheme, state);
         if let Some(errors) = &self.errors {
             all.insert("errors".to_owned(), error_json(errors));
+        }
+        if !self.quantities.is_empty() {
+            let numbers = self.quantities.iter().map(|measured| (measured.name.clone(), json!(measured.value)));
+            all.insert("quantities".to_owned(), Value::Object(numbers.collect()));
         }
         all.insert("title".to_owned(), json!(scene.title));
         all.insert("method".to_owned(), json!(scene.scheme.method.name()));
@@ -70,5 +82,6 @@ fn error_json(errors: &Errors) -> Value {
     let mut all: serde_json::Map<String, Value> =
         errors.fields().iter().map(|(name, norms)| ((*name).to_owned(), json!(norms))).collect();
     all.insert("standard".to_owned(), json!(errors.standard));
+    all.insert("standard_l1".to_owned(), json!(errors.standard_l1));
     Value::Object(all)
 }

@@ -3,7 +3,7 @@
 //!
 //! An entry is the only place that names a thing. What reads scenes, checks them, answers "did you mean", lists what there
 //! is in messages and writes `docs/scene.md` follows from the entries; so does the problem that a scene becomes. A new law,
-//! condition, source, flux, exact solution, output, grid, layout, limiter or control of the curl is a file with a type and one entry
+//! condition, source, flux, exact solution, output, quantity, grid, layout, limiter or control of the curl is a file with a type and one entry
 //! here (`docs/extend.md`). A program that uses the crate adds entries of its own by [`Table::add`].
 //!
 //! ```
@@ -23,6 +23,7 @@ pub mod limiters;
 pub mod methods;
 pub mod outputs;
 mod parameter;
+pub mod quantities;
 pub mod solutions;
 pub mod sources;
 mod table;
@@ -40,6 +41,7 @@ pub use limiters::LIMITERS;
 pub use methods::{METHODS, Method, Sweeps};
 pub use outputs::OUTPUTS;
 pub use parameter::*;
+pub use quantities::QUANTITIES;
 pub use solutions::SOLUTIONS;
 pub use sources::SOURCES;
 pub use table::Table;

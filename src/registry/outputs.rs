@@ -45,12 +45,12 @@ pub struct Recording<'a> {
 }
 
 /// The fields of every body, and the variables of all laws.
-fn known_fields() -> Vec<Field> {
+pub(super) fn known_fields() -> Vec<Field> {
     let laws: Vec<Law> = super::LAWS.iter().map(|entry| (entry.build)(&super::example(entry.parameters))).collect();
     Field::of_laws(&laws)
 }
 
-fn field_names() -> Vec<&'static str> {
+pub(super) fn field_names() -> Vec<&'static str> {
     known_fields().into_iter().map(Field::name).collect()
 }
 
@@ -177,7 +177,7 @@ pub fn check_fields(output: &Chosen<Output>, laws: &[Law]) -> std::result::Resul
 }
 
 /// The names of the laws that have a field.
-fn has(field: Field) -> String {
+pub(super) fn has(field: Field) -> String {
     let of = |entry: &&Entry<super::laws::Build>| {
         let law = (entry.build)(&super::example(entry.parameters));
         field.is_of(&[law])

@@ -2,6 +2,7 @@
 
 use super::values::tests::ASKED;
 use super::*;
+use crate::quantity::Seen;
 use std::collections::BTreeSet;
 
 /// The name, line and parameters of an entry.
@@ -23,6 +24,7 @@ fn all() -> Vec<(&'static str, Vec<Line>)> {
         ("layouts", of(&LAYOUTS)),
         ("controls", of(&CONTROLS)),
         ("methods", of(&METHODS)),
+        ("quantities", of(&QUANTITIES)),
     ]
 }
 
@@ -65,6 +67,17 @@ fn defaults_are_in_their_ranges() {
     }
 }
 
+/// A unit square of 2 x 2 cells at rest.
+fn free_square() -> crate::scene::Scene {
+    let sides = ["left", "right", "bottom", "top"].map(|g| format!("[[boundary]]\ngroup = \"{g}\"\nkind = \"free\"\n"));
+    let text = format!(
+        "[mesh]\nrectangle = {{ size = [1.0, 1.0], cells = [2, 2] }}\n[[material]]\nlaw = \"neo-hookean\"\nyoung = 1.0\n\
+         poisson = 0.3\ndensity = 1.0\n{}[scheme]\nmethod = \"rk-dgfem\"\ndegree = 1\n[time]\nend = 1.0\n",
+        sides.concat()
+    );
+    crate::scene::Scene::parse(&text, std::path::Path::new("square.toml"), &[]).unwrap()
+}
+
 /// Builds an entry from an example, and tells which values it asked for that it has no parameter for.
 fn strange<B>(entry: &'static Entry<B>, build: impl Fn(&B, &Values)) -> Vec<String> {
     let values = example(entry.parameters);
@@ -102,6 +115,22 @@ fn builders_ask_for_the_parameters_of_their_entry_and_for_no_others() {
             }
         };
         assert_eq!(strange(entry, none_is_nan), none, "{}", entry.name);
+    }
+    let problem = crate::problem::Problem::new(&free_square()).unwrap();
+    for entry in &QUANTITIES {
+        let build = |build: &quantities::Kind, of: &Values| {
+            let crate::problem::Problem { body, scheme, state, .. } = &problem;
+            let seen = Seen::new(&body.mesh, scheme, state, &body.material);
+            let quantity = (build.make)(of, &quantities::Start { seen: &seen, exact: None }).unwrap();
+            // A body at rest has no front.
+            let is_front = entry.name == "front-width" || entry.name == "overshoot";
+            assert!(is_front || quantity.of(&seen).is_finite(), "{}", entry.name);
+            let _ = ((build.unit)(of), (build.displacement)(of), (build.check)(of, &body.mesh).is_ok());
+        };
+        // Fields are those of all laws, which are made to be asked for theirs.
+        let of_a_law = |name: &String| LAWS.iter().any(|law| law.parameters.iter().any(|own| own.name == name));
+        let strange: Vec<String> = strange(entry, build).into_iter().filter(|name| !of_a_law(name)).collect();
+        assert_eq!(strange, none, "{}", entry.name);
     }
     for entry in &LAYOUTS {
         let build = |build: &layouts::Layout, of: &Values| match build.points {

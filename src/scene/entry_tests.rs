@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::registry::{
-    CONDITIONS, CONTROLS, FLUXES, Form, GRIDS, LAWS, LAYOUTS, LIMITERS, METHODS, OUTPUTS, Parameter, Preset, SOLUTIONS,
-    SOURCES, Value, Values, example,
+    CONDITIONS, CONTROLS, FLUXES, Form, GRIDS, LAWS, LAYOUTS, LIMITERS, METHODS, OUTPUTS, Parameter, Preset,
+    QUANTITIES, SOLUTIONS, SOURCES, Value, Values, example,
 };
 
 const SCENE: &str = r#"
@@ -76,6 +76,9 @@ fn cases() -> Vec<Case> {
     }
     for (name, parameters) in LIMITERS.iter().map(|entry| (entry.name, entry.parameters)) {
         all.push(case(name, parameters, move |keys| vec![format!("limiter={{kind=\"{name}\"{keys}}}")]));
+    }
+    for (name, parameters) in QUANTITIES.iter().map(|entry| (entry.name, entry.parameters)) {
+        all.push(case(name, parameters, move |keys| vec![format!("quantity=[{{name=\"q\",kind=\"{name}\"{keys}}}]")]));
     }
     for name in FLUXES.iter().map(|entry| entry.name) {
         all.push(case(name, &[], move |_| vec![format!("scheme.flux={name}")]));

@@ -11,6 +11,7 @@ mod origin;
 mod outputs;
 mod points;
 pub mod portable;
+mod quantities;
 mod read;
 mod reader;
 mod reference;
@@ -31,6 +32,7 @@ use crate::registry::controls::Control;
 use crate::registry::{self, Chosen, Method, Sweeps, limiters};
 pub use names::Histories;
 use origin::{Origin, Part};
+pub use quantities::MEASURES;
 pub use reference::reference;
 
 /// A whole scene.
@@ -66,6 +68,8 @@ pub struct Scene {
     pub end: f64,
     /// What is recorded when.
     pub outputs: Vec<Output>,
+    /// The quantities of interest.
+    pub quantities: Vec<Quantity>,
     /// The watch over the energy; none where it is off.
     pub watch: Option<Watch>,
     /// When the run gets another grid.
@@ -215,6 +219,17 @@ pub struct Output {
     pub when: When,
     /// Whether steps are shortened to meet the times.
     pub exact_times: bool,
+}
+
+/// A quantity of interest.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Quantity {
+    /// Its name in results, unique.
+    pub name: String,
+    /// What.
+    pub what: Chosen<registry::quantities::Kind>,
+    /// When.
+    pub when: registry::quantities::When,
 }
 
 /// When something is recorded.

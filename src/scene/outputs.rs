@@ -49,7 +49,8 @@ fn output(table: &mut Reader, span: [f64; 2], degree: usize) -> Result<Output> {
     Ok(Output { name, what, when, exact_times: exact })
 }
 
-fn fit_for_a_file(name: &str) -> bool {
+/// Whether a name is fit for a file, or for a column of a table.
+pub(super) fn fit_for_a_file(name: &str) -> bool {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.');
     name.len() <= 100 && !name.starts_with('.') && name.chars().all(plain)
 }

@@ -32,6 +32,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     let mut time_table = root.table("time")?;
     let mut watch_table = root.table("watch")?;
     let output_tables = root.tables("output")?;
+    let quantity_tables = root.tables("quantity")?;
     let regrid_tables = root.tables("regrid")?;
     root.finish()?;
 
@@ -68,6 +69,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         start,
         end,
         outputs: super::outputs::outputs(output_tables, &materials, [start, end], degree)?,
+        quantities: super::quantities::quantities(quantity_tables, &materials, [start, end], degree)?,
         materials,
         watch: watch(watch_table.as_mut())?,
         regrids: super::regrid::regrids(regrid_tables, [start, end], degree)?,

@@ -5,7 +5,7 @@ use super::tables;
 use crate::expression::FUNCTIONS;
 use crate::registry::{
     CONDITIONS, CONTROLS, Entry, FLUXES, Form, GRIDS, LAWS, LAYOUTS, LIMITERS, METHODS, OUTPUTS, Parameter, Preset,
-    SOLUTIONS, SOURCES, Table,
+    QUANTITIES, SOLUTIONS, SOURCES, Table,
 };
 
 /// The whole page, in Markdown.
@@ -81,6 +81,11 @@ fn all(page: &mut String) {
     );
     keys(page, &[tables::OUTPUT, tables::WHEN, &[tables::EXACT_TIMES]].concat());
     entries(page, "kind", &OUTPUTS, |_| String::new());
+    let about = "Quantities of interest: single numbers that a run writes as `quantities` into summary.json, and whose error `dgmpm study` \
+                 finds, see cost.md; none by default. One that a scene does not name costs nothing.";
+    head(page, "[[quantity]]", about);
+    keys(page, tables::QUANTITY);
+    entries(page, "kind", &QUANTITIES, |_| String::new());
     let about = "Another grid during the run, see \"Another grid during the run\"; none by default. One of the keys of the second \
                  table says what the new grid is. Times or `when` are required.";
     head(page, "[[regrid]]", about);

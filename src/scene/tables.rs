@@ -2,11 +2,14 @@
 //! [`crate::registry`], with its entry.
 
 use super::Histories;
+use crate::registry::quantities::Statistic;
 use crate::registry::{
     AT_LEAST_1, Check, FINITE, FLUXES, Form, METHODS, NOT_NEGATIVE, POSITIVE, Parameter, Policy, Preset, SHARE, Sweeps,
     controls, fluxes,
 };
-use crate::registry::{CONDITIONS, CONTROLS, LAWS, LAYOUTS, LIMITERS, OUTPUTS, SOLUTIONS, SOURCES, grids, limiters};
+use crate::registry::{
+    CONDITIONS, CONTROLS, LAWS, LAYOUTS, LIMITERS, OUTPUTS, QUANTITIES, SOLUTIONS, SOURCES, grids, limiters,
+};
 
 const fn key(name: &'static str, about: &'static str, unit: &'static str, form: Form, default: Preset) -> Parameter {
     Parameter { name, about, unit, form, default }
@@ -233,6 +236,35 @@ pub(super) const EXACT_TIMES: Parameter = key(
 );
 
 pub(super) const OUTPUT: &[Parameter] = &[needed("kind", "what is recorded", "", Form::Name(|| OUTPUTS.names(), &[]))];
+
+/// When a quantity is taken; the first is the default.
+pub(super) const OVER: [&str; 2] = ["end", "run"];
+
+pub(super) const QUANTITY: &[Parameter] = &[
+    needed("name", "its name in results, unique: letters, digits, `_`, `-` and `.`", "", Form::Text),
+    needed("kind", "the quantity", "", Form::Name(|| QUANTITIES.names(), &[])),
+    key(
+        "over",
+        "taken at the end of the run, or over all its steps",
+        "",
+        Form::Name(|| OVER.to_vec(), &[]),
+        Preset::Name(OVER[0]),
+    ),
+    key(
+        "time",
+        "taken at this time, on a straight line between the steps before and after it; in place of `over`",
+        "s",
+        Form::Number(MOMENT),
+        Preset::Absent("the end of the run"),
+    ),
+    key(
+        "statistic",
+        "with `over = \"run\"`: what is taken of the values of all steps",
+        "",
+        Form::Name(|| of(Statistic::NAMES), &[]),
+        Preset::Absent("`\"max\"`"),
+    ),
+];
 
 pub(super) const CRITERIA: &[Parameter] = &[
     key(

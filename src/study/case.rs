@@ -1,7 +1,9 @@
 //! One setting of a scene: built and run.
 
 use crate::error::Result;
+use crate::observe::Observer;
 use crate::problem::{Problem, Setup};
+use crate::quantity::Measured;
 use crate::registry::Method;
 use crate::run::{Report, Run, Stop};
 use crate::scene::{self, Scene, Step};
@@ -99,7 +101,7 @@ impl Case {
     /// Bad input, as for a run of the scene.
     pub fn build(&self, scene: &Scene) -> Result<Problem> {
         let mut scene = scene.with(&self.sets(scene))?;
-        // A study looks at the end only: outputs would ask for time, files and the displacement.
+        // Outputs would ask for time, files and the displacement; the quantities of the scene stay.
         scene.outputs.clear();
         let mut mesh = scene.build_mesh()?;
         if let scene::Mesh::File(_) = scene.mesh {
@@ -109,16 +111,21 @@ impl Case {
     }
 }
 
-/// Runs a problem to the end without outputs, from a copy of its state.
+/// Runs a problem to the end without outputs, from a copy of its state, and takes the quantities of its scene. What they cost is
+/// not in the seconds of the report; that the displacement is integrated, where they need it, is.
 ///
 /// # Errors
 /// See [`Stop`].
-pub fn run(problem: &Problem, interrupt: &AtomicBool) -> std::result::Result<(State, Report), Stop> {
+pub fn run(problem: &Problem, interrupt: &AtomicBool) -> std::result::Result<(State, Report, Vec<Measured>), Stop> {
     let (mut state, mut report) = (problem.state.clone(), Report::default());
     let (mesh, scheme, settings) = (&problem.body.mesh, &problem.scheme, problem.settings);
-    Run { mesh, scheme, settings, observers: vec![], interrupt }.advance(&mut state, &mut report)?;
+    let mut gauge = problem.gauge()?;
+    let observers = gauge.iter_mut().map(|gauge| Box::new(gauge) as Box<dyn Observer + '_>).collect();
+    Run { mesh, scheme, settings, observers, interrupt }.advance(&mut state, &mut report)?;
     report.finish(scheme, &state);
-    Ok((state, report))
+    let [cpu, wall] = gauge.as_ref().map_or([0.0; 2], |gauge| gauge.cost);
+    (report.cpu, report.wall) = ((report.cpu - cpu).max(0.0), (report.wall - wall).max(0.0));
+    Ok((state, report, gauge.map(|gauge| gauge.measured()).unwrap_or_default()))
 }
 
 /// Why a run lost stability, in a few words.

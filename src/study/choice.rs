@@ -9,7 +9,7 @@ use crate::scene;
 /// What a user asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Aim {
-    /// A standard error.
+    /// An error by the measure of the study.
     Error(f64),
     /// CPU seconds of the run (those on the clock, on one thread).
     Seconds(f64),
@@ -67,7 +67,7 @@ pub fn ranked(study: &Study, series: &[Series], aim: Aim) -> Vec<Choice> {
 }
 
 fn candidate(study: &Study, series: &Series, aim: Aim) -> Option<Choice> {
-    let model = study.model(series).filter(|model| model.levels() > 1)?;
+    let model = study.model(series).filter(|model| model.levels() > 1 && model.knows_errors())?;
     let expect = |refinement: f64| {
         let case = Case { series: series.clone(), refinement };
         (model.at(study.size(&case)), case)

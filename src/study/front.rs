@@ -65,8 +65,7 @@ mod tests {
 
     fn record(degree: usize, refinement: f64, cpu: f64, error: f64) -> Record {
         let series = Series { method: crate::registry::Method::RkDgfem, degree, time_degree: degree, layout: None };
-        let errors = crate::exact::Errors { standard: error, ..Default::default() };
-        Record { cpu, errors: Some(errors), ..Record::failed(Case { series, refinement }, "done".into()) }
+        Record { cpu, error: Some(error), ..Record::failed(Case { series, refinement }, "done".into()) }
     }
 
     fn records() -> Vec<Record> {

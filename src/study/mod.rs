@@ -1,32 +1,39 @@
 //! What accuracy costs in time: one scene by many settings, the error and the seconds of each, the cheapest setting for
 //! an error or a time.
 //!
-//! The one number that stands for the error is the standard measure of [`crate::exact::Errors`], against the exact
-//! solution of the scene or, where none is known, against a finer run whose own error is estimated. Every method steps
+//! The one number that stands for the error is a [`Measure`]: the standard one of [`crate::exact::Errors`] or the same in L1, against
+//! the exact solution of the scene or, where none is known, against a finer run whose own error is estimated; or the error of a
+//! quantity that the scene names, against its exact value or, where none is known, by Richardson's extrapolation. Every method steps
 //! by the same share of its own stability limit, so that none is slowed down by a rule made for another.
 
 mod case;
 mod choice;
 mod front;
+mod measure;
 mod plot;
 mod predict;
 mod record;
 mod reference;
 mod request;
+mod richardson;
 mod session;
 mod table;
+mod trend;
 mod words;
 
 pub use case::{Case, Series};
 pub use choice::{Aim, Choice, ranked};
 pub use front::{Answer, answers, cost, front};
+pub use measure::Measure;
 pub use plot::{Axis, plot};
 pub use predict::{Model, Size};
 pub use record::{Prediction, Record};
 pub use reference::Reference;
 pub use request::Request;
+pub use richardson::{Doubt, Estimate, estimate};
 pub use session::{Plan, Session};
 pub use table::{COLUMNS, csv, machine, markdown};
+pub use trend::{Limit, Trend, trends};
 
 use crate::error::Result;
 use crate::lane::LANES;
@@ -46,6 +53,8 @@ pub struct Study<'a> {
     pub h: f64,
     /// What errors are taken against.
     pub reference: Reference,
+    /// What settings are compared by.
+    pub measure: Measure,
     /// What was measured.
     pub records: Vec<Record>,
     /// Runs of a short case, of which the fastest counts.
@@ -65,7 +74,10 @@ impl Study<'_> {
         let model = self.model(&case.series).filter(|model| model.levels() > 1);
         let predicted = model.map(|model| model.at(self.size(&case)));
         let record = record::measure(self.scene, case, &self.reference, predicted, self.repeat, self.interrupt)?;
+        let series = record.case.series.clone();
         self.records.push(record);
+        // Another mesh may tell more of those before, too.
+        trend::rate(&mut self.records, &series, self.scene, &self.measure);
         // The one just pushed.
         Ok(&self.records[self.records.len() - 1])
     }

@@ -1,7 +1,9 @@
 //! Work-precision plots, in logarithms, one line a series: as SVG and as PNG.
 
 use super::case::Series;
+use super::measure::Measure;
 use super::record::Record;
+use super::trend::series_of;
 use crate::chart::{Chart, Line, Scale, save};
 use crate::error::{Error, Result};
 use crate::registry::methods::Build;
@@ -36,28 +38,22 @@ impl Axis {
 ///
 /// # Errors
 /// As for [`crate::chart::save`].
-pub fn plot(records: &[Record], axis: Axis, title: &str, path: &Path) -> Result<()> {
+pub fn plot(records: &[Record], axis: Axis, title: &str, measure: &Measure, path: &Path) -> Result<()> {
     let lines = lines(records, axis);
     if lines.is_empty() {
         return Err(Error::output(path, "no run went well: there is nothing to draw"));
     }
-    let (x, y) = (axis.name().to_owned(), "relative error (standard measure)".to_owned());
+    let (x, y) = (axis.name().to_owned(), measure.label());
     save(&Chart { title: title.to_owned(), x, y, scales: [Scale::Log; 2], lines }, path)
 }
 
 /// A line for each series that has a point, in the order of the records.
 fn lines(records: &[Record], axis: Axis) -> Vec<Line> {
-    let mut all: Vec<&Series> = Vec::new();
-    for record in records {
-        if !all.contains(&&record.case.series) {
-            all.push(&record.case.series);
-        }
-    }
     let line = |series: &Series| {
         let Build { marker, stroke, .. } = *series.method.build();
         Line { name: series.name(), colour: series.degree, marker, stroke, points: points(records, series, axis) }
     };
-    all.into_iter().map(line).filter(|line| !line.points.is_empty()).collect()
+    series_of(records).into_iter().map(line).filter(|line| !line.points.is_empty()).collect()
 }
 
 /// Records of a series that can stand in a plot, from coarse to fine.

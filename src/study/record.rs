@@ -5,17 +5,21 @@ use super::case::{Case, run, why};
 use super::reference::Reference;
 use crate::error::{Error, Result};
 use crate::exact::Errors;
+use crate::quantity::Measured;
 use crate::run::{Report, Stop, dofs};
 use crate::scene::Scene;
 use crate::state::State;
 use std::sync::atomic::AtomicBool;
+
+/// The status of a run that got to its end.
+const DONE: &str = "done";
 
 /// What is expected of a run.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Prediction {
     /// CPU seconds.
     pub cpu: f64,
-    /// Standard error.
+    /// The error by the measure of the study; NaN where the meshes so far tell none.
     pub error: f64,
 }
 
@@ -42,8 +46,14 @@ pub struct Record {
     pub memory: f64,
     /// The largest resident memory of the program so far, MiB.
     pub peak: f64,
-    /// Errors at the end; none of a case that did not get there.
+    /// Errors at the end; none of a case that did not get there, or of a study without a reference.
     pub errors: Option<Errors>,
+    /// The quantities that the scene names; empty of a case that did not get to its end.
+    pub quantities: Vec<Measured>,
+    /// Their errors, as far as the meshes of the series tell them: relative, or the value of a quantity that is an error itself.
+    pub quantity_errors: Vec<Option<f64>>,
+    /// The error by the measure of the study, where it is known.
+    pub error: Option<f64>,
     /// `done`, or why it did not get there.
     pub status: String,
     /// What earlier records had let expect.
@@ -51,17 +61,21 @@ pub struct Record {
 }
 
 impl Record {
-    /// The standard error of a run that went well.
+    /// The error by the measure of the study, of a run that went well.
     pub fn error(&self) -> Option<f64> {
-        self.errors.map(|errors| errors.standard)
+        self.error
+    }
+
+    /// Whether the run got to its end.
+    pub fn is_done(&self) -> bool {
+        self.status == DONE
     }
 
     pub(super) fn failed(case: Case, status: String) -> Self {
-        let nothing = Report::default();
-        Self::new(case, [0, 0], &nothing, None, status)
+        Self::new(case, [0, 0], &Report::default(), status)
     }
 
-    fn new(case: Case, sizes: [usize; 2], report: &Report, errors: Option<Errors>, status: String) -> Self {
+    fn new(case: Case, sizes: [usize; 2], report: &Report, status: String) -> Self {
         Self {
             case,
             h: 0.0,
@@ -73,7 +87,10 @@ impl Record {
             wall: report.wall,
             memory: report.bytes as f64 / (1024.0 * 1024.0),
             peak: crate::run::peak_memory_mib(),
-            errors,
+            errors: None,
+            quantities: vec![],
+            quantity_errors: vec![],
+            error: None,
             status,
             predicted: None,
         }
@@ -97,26 +114,25 @@ pub(super) fn measure(
         Err(why) => return Ok(Record { predicted, ..Record::failed(case, why.to_string()) }),
     };
     let sizes = [built.body.mesh.cells.len(), dofs(&built.scheme)];
-    let mut best: Option<(State, Report)> = None;
+    let mut best: Option<(State, Report, Vec<Measured>)> = None;
     for _ in 0..repeat.max(1) {
         match run(&built, interrupt) {
-            Ok((state, report)) if best.as_ref().is_none_or(|(_, old)| report.cpu < old.cpu) => {
-                best = Some((state, report));
-            }
+            Ok(run) if best.as_ref().is_none_or(|(_, old, _)| run.1.cpu < old.cpu) => best = Some(run),
             Ok(_) => {}
             Err(Stop::Interrupted) => return Err(Error::Interrupted("in a study; its table is kept".into())),
             Err(Stop::Output(why)) => return Err(why),
             Err(stop @ (Stop::Unstable(_) | Stop::EnergyMade(_))) => {
                 let status = format!("unstable: {}", why(&stop));
-                return Ok(Record { predicted, ..Record::new(case, sizes, &Report::default(), None, status) });
+                return Ok(Record { predicted, ..Record::new(case, sizes, &Report::default(), status) });
             }
         }
-        if best.as_ref().is_some_and(|(_, report)| report.cpu > SHORT) {
+        if best.as_ref().is_some_and(|(_, report, _)| report.cpu > SHORT) {
             break;
         }
     }
-    let Some((state, report)) = best else { return Ok(Record::failed(case, "no run".into())) };
+    let Some((state, report, quantities)) = best else { return Ok(Record::failed(case, "no run".into())) };
     let errors = reference.errors(&built, &state);
-    let record = Record::new(case, sizes, &report, Some(errors), "done".into());
-    Ok(Record { predicted, h: built.body.mesh.smallest_h(), ..record })
+    let (quantity_errors, h) = (vec![None; quantities.len()], built.body.mesh.smallest_h());
+    let record = Record::new(case, sizes, &report, DONE.into());
+    Ok(Record { predicted, h, errors, quantities, quantity_errors, ..record })
 }

@@ -1,6 +1,7 @@
 //! What errors are taken against: the exact solution of the scene, or a finer run of a higher degree.
 
 use super::case::{Case, Series, run, why};
+use super::richardson::order;
 use crate::cloud::Locator;
 use crate::error::{Error, Result};
 use crate::exact::{Errors, Exact, compare, errors};
@@ -19,6 +20,8 @@ pub enum Reference {
     Exact(Arc<dyn Exact>),
     /// A finer run.
     Run(Box<Finer>),
+    /// None: only the quantities of the scene have errors.
+    Nothing,
 }
 
 /// A finer run, and what is known of its own error.
@@ -35,7 +38,7 @@ impl Finer {
         let built = case.build(scene)?;
         let lost = |what: String| Error::input(what, "give another --reference DEGREE,REFINEMENT");
         match run(&built, interrupt) {
-            Ok((state, _)) => Ok(Self { built, state, case, error: None }),
+            Ok((state, ..)) => Ok(Self { built, state, case, error: None }),
             Err(stop @ (Stop::Unstable(_) | Stop::EnergyMade(_))) => {
                 Err(lost(format!("the reference run lost stability: {}", why(&stop))))
             }
@@ -98,11 +101,13 @@ impl Reference {
         Ok(Self::Run(Box::new(finer)))
     }
 
-    /// The errors of a state.
-    pub fn errors(&self, built: &Problem, state: &State) -> Errors {
+    /// The errors of a state; none without a reference.
+    pub fn errors(&self, built: &Problem, state: &State) -> Option<Errors> {
+        let Problem { body, scheme, .. } = built;
         match self {
-            Self::Exact(exact) => errors(exact.as_ref(), &built.body.mesh, &built.scheme, state, &built.body.material),
-            Self::Run(finer) => finer.errors(built, state),
+            Self::Exact(exact) => Some(errors(exact.as_ref(), &body.mesh, scheme, state, &body.material)),
+            Self::Run(finer) => Some(finer.errors(built, state)),
+            Self::Nothing => None,
         }
     }
 
@@ -111,12 +116,14 @@ impl Reference {
         match self {
             Self::Exact(_) => Some(0.0),
             Self::Run(finer) => finer.error,
+            Self::Nothing => None,
         }
     }
 
     /// What it is, in words.
     pub fn words(&self) -> String {
         match self {
+            Self::Nothing => "nothing, as none was asked for".to_owned(),
             Self::Exact(_) => "the exact solution".to_owned(),
             Self::Run(finer) => {
                 let own = match finer.error {
@@ -137,14 +144,7 @@ fn coarser(scene: &Scene, refinement: f64, share: f64) -> f64 {
 /// The error e of a solution from the distances d_i = e (h_i^p - 1) of two coarser ones with h_i times its h; the rate p,
 /// between that of a shock and N + 1, follows from their ratio.
 fn extrapolated(half: (f64, f64), quarter: (f64, f64), degree: usize) -> f64 {
-    let ratio = |p: f64| (quarter.0.powf(p) - 1.0) / (half.0.powf(p) - 1.0);
-    let (mut low, mut high) = (0.25, degree as f64 + 1.0);
-    // The ratio rises with p.
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if ratio(middle) < quarter.1 / half.1 { low = middle } else { high = middle }
-    }
-    half.1 / (half.0.powf(low) - 1.0)
+    half.1 / (half.0.powf(order(half, quarter, [0.25, degree as f64 + 1.0])) - 1.0)
 }
 
 #[cfg(test)]

@@ -2,10 +2,11 @@
 
 use super::case::{Case, Series};
 use super::choice::Aim;
+use super::measure::Measure;
 use super::session::Plan;
 use crate::error::{Error, Result};
 use crate::registry::Method;
-use crate::scene::Scene;
+use crate::scene::{MEASURES, Scene};
 
 /// The smallest error that a study looks for: double precision over thousands of steps.
 const ROUNDING: f64 = 1e-13;
@@ -27,7 +28,9 @@ pub struct Request {
     pub layouts: Vec<String>,
     /// Degree and refinement of the reference run; empty: one degree more than the largest, on the finest mesh.
     pub reference: Vec<f64>,
-    /// The standard error that the cheapest setting is looked for.
+    /// What settings are compared by: standard, l1 or the name of a quantity of the scene; empty: standard.
+    pub measure: String,
+    /// The error that the cheapest setting is looked for.
     pub error: Option<f64>,
     /// The CPU seconds that the most accurate setting is looked for.
     pub seconds: Option<f64>,
@@ -44,8 +47,12 @@ impl Request {
             return Err(scene.error("regrid", what, "leave them out by --set regrid=[]"));
         }
         let (aim, series, refinements) = (self.aim()?, self.series(scene)?, self.refinements(scene)?);
+        let measure = if self.measure.is_empty() { MEASURES[0] } else { &self.measure };
+        let measure = Measure::named(measure, scene)?;
+        // Quantities are extrapolated: a reference run is made for them only where it is asked for.
+        let asked = measure.needs_reference() || !self.reference.is_empty();
         let reference = self.reference(&refinements)?;
-        Ok(Plan { series, refinements, aim, reference })
+        Ok(Plan { series, refinements, aim, measure, reference: asked.then_some(reference) })
     }
 
     fn aim(&self) -> Result<Option<Aim>> {
@@ -67,7 +74,12 @@ impl Request {
         let of_file = scene.mesh_path().is_some();
         let mut all = self.refinements.clone();
         if all.is_empty() {
-            all = if of_file { vec![1.0, 2.0] } else { vec![0.25, 0.5, 1.0] };
+            all = match of_file {
+                false => vec![0.25, 0.5, 1.0],
+                // Three meshes are the least that extrapolation takes.
+                true if !scene.quantities.is_empty() => vec![1.0, 2.0, 3.0],
+                true => vec![1.0, 2.0],
+            };
         }
         all.sort_by(f64::total_cmp);
         all.dedup();

@@ -3,12 +3,13 @@
 use super::case::{Case, Series};
 use super::choice::{Aim, Choice, ranked};
 use super::front::{answers, front};
+use super::measure::Measure;
 use super::plot::{Axis, plot};
 use super::record::Record;
 use super::reference::Reference;
-use super::table::{csv, machine, markdown};
-use super::words::{answer, line, percent, title};
-use super::{SHORT, Study};
+use super::table::{self, csv, machine};
+use super::words::{answer, line, title};
+use super::{SHORT, Study, trend};
 use crate::error::{Error, Result};
 use crate::format::short_seconds;
 use crate::io::pending::write_text;
@@ -37,8 +38,10 @@ pub struct Plan {
     pub refinements: Vec<f64>,
     /// What is asked for; none: everything is measured.
     pub aim: Option<Aim>,
-    /// Degree and refinement of the reference run, where no exact solution is known.
-    pub reference: (usize, f64),
+    /// What settings are compared by.
+    pub measure: Measure,
+    /// Degree and refinement of the reference run, where no exact solution is known; none: no reference run.
+    pub reference: Option<(usize, f64)>,
 }
 
 /// A study under way.
@@ -71,16 +74,21 @@ impl<'a> Session<'a> {
     ) -> Result<Session<'a>> {
         let mesh = scene.build_mesh()?;
         say(&format!("{}: what accuracy costs in time", scene.title));
-        let (degree, refinement) = plan.reference;
-        let reference = Reference::new(scene, degree, refinement, &NEVER)?;
+        scene.check_quantities(&mesh)?;
+        let reference = match (plan.reference, scene.build_exact()) {
+            (Some((degree, refinement)), _) => Reference::new(scene, degree, refinement, &NEVER)?,
+            (None, Some(exact)) => Reference::Exact(exact),
+            (None, None) => Reference::Nothing,
+        };
         let head = vec![
             format!("problem: {}", scene.title),
-            format!("error: standard measure against {}", reference.words()),
+            format!("error: {}, against {}", plan.measure.label(), plan.measure.against(&reference.words())),
             format!("machine: {}", machine(Kernel::widest())),
         ];
         head.iter().for_each(|line| say(line));
         let (cells, h) = (mesh.cells.len(), mesh.smallest_h());
-        let study = Study { scene, cells, h, reference, records: vec![], repeat, interrupt: &NEVER };
+        let measure = plan.measure.clone();
+        let study = Study { scene, cells, h, reference, measure, records: vec![], repeat, interrupt: &NEVER };
         Ok(Session { study, plan, out, head, say })
     }
 }
@@ -106,7 +114,7 @@ impl Session<'_> {
     fn measure(&mut self, case: Case) -> Result<Record> {
         let record = self.study.measure(case)?.clone();
         self.say(line(&record));
-        write_text(&self.out.join("study.csv"), &csv(&self.study.records, &self.head))?;
+        write_text(&self.out.join("study.csv"), &self.csv())?;
         Ok(record)
     }
 
@@ -151,7 +159,10 @@ impl Session<'_> {
     /// Calibrates, then chooses, predicts and runs until the aim is met.
     fn aim(&mut self, aim: Aim) -> Result<Vec<Value>> {
         self.say(match aim {
-            Aim::Error(error) => format!("the cheapest setting with an error of {}; first, short runs", percent(error)),
+            Aim::Error(error) => {
+                let error = self.plan.measure.words(error);
+                format!("the cheapest setting with an error of {error}; first, short runs")
+            }
             Aim::Seconds(s) => format!("the most accurate setting that takes {s} CPU seconds; first, short runs"),
         });
         self.say(title());
@@ -191,11 +202,12 @@ impl Session<'_> {
             for (level, refinement) in self.plan.refinements.clone().into_iter().enumerate() {
                 let case = Case { series: series.clone(), refinement };
                 let model = self.study.model(&series);
-                // Two meshes are the least that tells a rate.
-                let most = if level < 2 { 10.0 * budget } else { budget };
+                // Two meshes are the least that tells a rate, three the least that extrapolation takes.
+                let least = if self.plan.measure.needs_reference() { 2 } else { 3 };
+                let most = if level < least { 10.0 * budget } else { budget };
                 let dear = model.is_some_and(|m| m.at(self.study.size(&case)).cpu > most);
                 let beyond = |r: &Record| matches!((aim, r.error()), (Aim::Error(aim), Some(e)) if e < aim);
-                if dear || level >= 2 && self.study.records.iter().any(|r| r.case.series == series && beyond(r)) {
+                if dear || level >= least && self.study.records.iter().any(|r| r.case.series == series && beyond(r)) {
                     break;
                 }
                 self.measure(case)?;
@@ -217,10 +229,7 @@ impl Session<'_> {
             let Some(case) = ranked.iter().take(RIVALS).find_map(step) else { break };
             self.measure(case)?;
         }
-        ranked(&self.study, &self.plan.series, aim)
-            .into_iter()
-            .next()
-            .ok_or_else(|| Error::input("no setting of the study can meet this", "allow more, or other --degrees"))
+        ranked(&self.study, &self.plan.series, aim).into_iter().next().ok_or_else(|| self.no_setting())
     }
 
     /// A mesh on the way to a choice, at most twice as fine as what its series was measured on, and its CPU seconds.
@@ -241,20 +250,24 @@ impl Session<'_> {
         self.say(format!("choice: {name}: predicted {}, error {error:.2e}", short_seconds(cpu)));
         let record = self.measure(choice.case.clone())?;
         let Some(found) = record.error() else {
-            let what = format!("the chosen setting does not run: {}", record.status);
-            return Err(Error::input(what, "give other --degrees"));
+            let what = match record.is_done() {
+                true => format!("the error of the chosen setting is not known: {}", self.doubt(&record.case.series)),
+                false => format!("the chosen setting does not run: {}", record.status),
+            };
+            return Err(Error::input(what, "give other --degrees or --refine"));
         };
         let took = format!("{} (predicted {})", short_seconds(record.cpu), short_seconds(cpu));
         self.say(format!("result: {took}, error {found:.2e} (predicted {error:.2e})"));
         Ok((record, found))
     }
 
-    /// Front, answers, plots and `study.json`.
+    /// Front, answers, quantities, plots and `study.json`.
     fn finish(self, tries: Vec<Value>) -> Result<()> {
-        let records = &self.study.records;
+        let (records, measure, scene) = (&self.study.records, &self.plan.measure, self.study.scene);
         let answers = answers(records);
         self.say("cheapest by error:");
-        answers.iter().for_each(|a| self.say(answer(a.error, &records[a.record])));
+        answers.iter().for_each(|a| self.say(answer(measure, a.error, &records[a.record])));
+        trend::lines(records, scene).iter().for_each(|line| self.say(line));
         let setting = |r: &Record| {
             json!({
                 "setting": r.case.series.name(),
@@ -266,27 +279,72 @@ impl Session<'_> {
         };
         let words = answers.iter().map(|a| json!({"for_error": a.error, "use": setting(&records[a.record])}));
         let all = json!({
-            "title": self.study.scene.title,
+            "title": scene.title,
             "head": self.head,
+            "measure": measure.name(),
             "reference_error": self.study.reference.error(),
             "answers": words.collect::<Vec<_>>(),
             "front": front(records).into_iter().map(|k| setting(&records[k])).collect::<Vec<_>>(),
+            "quantities": trend::json(records, scene),
             "tries": tries,
         });
+        write_text(&self.out.join("study.csv"), &self.csv())?;
         write_text(&self.out.join("study.json"), &format!("{all:#}\n"))?;
-        write_text(&self.out.join("table.md"), &markdown(records))?;
-        for (axis, name) in [(Axis::Seconds, "error_over_seconds"), (Axis::Dofs, "error_over_dofs")] {
-            for ending in ["svg", "png"] {
-                plot(records, axis, &self.study.scene.title, &self.out.join(format!("{name}.{ending}")))?;
-            }
+        write_text(&self.out.join("table.md"), &table::markdown(records, measure))?;
+        if !scene.quantities.is_empty() {
+            write_text(&self.out.join("quantities.md"), &trend::markdown(records, scene))?;
         }
+        self.plots()?;
         self.doubt_reference(records);
         self.say(format!("tables and plots in {}", self.out.display()));
         Ok(())
     }
 
+    /// The plots of error over seconds and unknowns; none where no error of a run that went well is known.
+    fn plots(&self) -> Result<()> {
+        let (records, measure) = (&self.study.records, &self.plan.measure);
+        let known = records.iter().any(|r| r.error().is_some());
+        if !known && records.iter().any(Record::is_done) {
+            self.say(format!("no plot: no run has a known {}", measure.label()));
+            return Ok(());
+        }
+        for (axis, name) in [(Axis::Seconds, "error_over_seconds"), (Axis::Dofs, "error_over_dofs")] {
+            for ending in ["svg", "png"] {
+                let path = self.out.join(format!("{name}.{ending}"));
+                plot(records, axis, &self.study.scene.title, measure, &path)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn csv(&self) -> String {
+        csv(&self.study.records, &self.study.scene.quantities, &self.head)
+    }
+
+    /// Why the error of a series by the measure is not known.
+    fn doubt(&self, series: &Series) -> String {
+        let Measure::Quantity { number, .. } = &self.plan.measure else { return "there is no reference".to_owned() };
+        let trends = trend::trends(&self.study.records, self.study.scene, *number);
+        let own = trends.into_iter().find(|trend| trend.series == *series);
+        own.map_or("no run went well".to_owned(), |trend| trend.limit.words())
+    }
+
+    /// The error of an aim that no setting meets.
+    fn no_setting(&self) -> Error {
+        let measure = &self.plan.measure;
+        if measure.needs_reference() || self.study.records.iter().any(|r| r.error().is_some()) {
+            return Error::input("no setting of the study can meet this", "allow more, or other --degrees");
+        }
+        let doubts = self.plan.series.iter().map(|series| format!("{}: {}", series.name(), self.doubt(series)));
+        let what = format!("no setting has a known {}: {}", measure.label(), doubts.collect::<Vec<_>>().join("; "));
+        Error::input(what, "give finer meshes by --refine, other --degrees, or another --measure")
+    }
+
     /// A result whose error is not far above that of the reference says little.
     fn doubt_reference(&self, records: &[Record]) {
+        if !self.plan.measure.needs_reference() {
+            return;
+        }
         let smallest = records.iter().filter_map(Record::error).fold(f64::INFINITY, f64::min);
         let own = self.study.reference.error();
         if own.is_none_or(|own| own > 0.3 * smallest) {

@@ -2,14 +2,17 @@
 
 use super::case::Series;
 use super::front::{answers, cost};
+use super::measure::Measure;
 use super::record::Record;
-use super::words::percent;
+use super::trend::series_of;
 use crate::lane::Kernel;
+use crate::scene::Quantity;
 use std::fmt::Write;
 
 /// Columns of `study.csv`. Errors are of F, v (m/s), P (Pa) at the end of the run; times in s, memory in MiB; `predicted_*`
-/// is what the coarser meshes of the series had let expect.
-pub const COLUMNS: [&str; 26] = [
+/// is what the coarser meshes of the series had let expect, by the measure of the study. Behind them stand `quantity_NAME` and
+/// `quantity_NAME_error` for each quantity of the scene.
+pub const COLUMNS: [&str; 27] = [
     "method",
     "degree",
     "time_degree",
@@ -25,6 +28,7 @@ pub const COLUMNS: [&str; 26] = [
     "memory_mib",
     "peak_memory_mib",
     "error",
+    "error_l1",
     "deformation_l1",
     "deformation_l2",
     "deformation_linf",
@@ -51,10 +55,11 @@ pub fn machine(kernel: Kernel) -> String {
 
 /// `study.csv`: lines of `#` with problem, reference and machine, then a row a record; the last column says `done` or why
 /// a case did not get to its end.
-pub fn csv(records: &[Record], head: &[String]) -> String {
+pub fn csv(records: &[Record], quantities: &[Quantity], head: &[String]) -> String {
     let mut text = String::new();
     head.iter().for_each(|line| text += &format!("# {}\n", line.replace('\n', " ")));
-    text += &format!("{},status\n", COLUMNS.join(","));
+    let of_quantities = quantities.iter().map(|q| format!(",quantity_{0},quantity_{0}_error", q.name));
+    text += &format!("{}{},status\n", COLUMNS.join(","), of_quantities.collect::<String>());
     for r in records {
         let Series { method, degree, time_degree, layout } = &r.case.series;
         let mut row = vec![method.name().to_owned(), degree.to_string(), time_degree.to_string()];
@@ -66,15 +71,19 @@ pub fn csv(records: &[Record], head: &[String]) -> String {
         row.extend([r.cpu, r.wall, r.memory, r.peak].map(|x| format!("{x:.6}")));
         match &r.errors {
             Some(errors) => {
-                row.push(format!("{:e}", errors.standard));
+                row.extend([errors.standard, errors.standard_l1].map(|error| format!("{error:e}")));
                 let norms = errors.fields().into_iter().flat_map(|(_, n)| [n.l1, n.l2, n.linf]);
                 row.extend(norms.map(|norm| format!("{norm:e}")));
             }
-            None => row.extend(std::iter::repeat_n(String::new(), 10)),
+            None => row.extend(std::iter::repeat_n(String::new(), 11)),
         }
         match &r.predicted {
-            Some(p) => row.extend([format!("{:e}", p.error), format!("{:.6}", p.cpu)]),
+            Some(p) => row.extend([number(Some(p.error)), format!("{:.6}", p.cpu)]),
             None => row.extend([String::new(), String::new()]),
+        }
+        for k in 0..quantities.len() {
+            row.push(number(r.quantities.get(k).map(|quantity| quantity.value)));
+            row.push(number(r.quantity_errors.get(k).copied().flatten()));
         }
         // The reason of a failure is free text.
         row.push(format!("\"{}\"", r.status.replace('"', "'").replace('\n', " ")));
@@ -83,18 +92,19 @@ pub fn csv(records: &[Record], head: &[String]) -> String {
     text
 }
 
+/// A number of a row; nothing where there is none.
+fn number(value: Option<f64>) -> String {
+    value.filter(|value| value.is_finite()).map_or(String::new(), |value| format!("{value:e}"))
+}
+
 /// CPU seconds by series for the powers of ten that the study reaches, as a Markdown table; the cheapest of a column is
 /// bold.
-pub fn markdown(records: &[Record]) -> String {
-    let mut series: Vec<&Series> = Vec::new();
-    for record in records.iter().filter(|r| r.errors.is_some()) {
-        if !series.contains(&&record.case.series) {
-            series.push(&record.case.series);
-        }
-    }
+pub fn markdown(records: &[Record], measure: &Measure) -> String {
+    let mut series = series_of(records);
+    series.retain(|one| records.iter().any(|r| r.case.series == **one && r.error().is_some()));
     let errors: Vec<f64> = answers(records).iter().map(|answer| answer.error).collect();
     let mut text = String::from("| CPU s for an error of |");
-    errors.iter().for_each(|e| text += &format!(" {} |", percent(*e)));
+    errors.iter().for_each(|e| text += &format!(" {} |", measure.words(*e)));
     text += &format!("\n|---|{}\n", "---|".repeat(errors.len()));
     for one in &series {
         let _ = write!(text, "| {} |", one.name());

@@ -1,5 +1,6 @@
 //! What a study says on the terminal.
 
+use super::measure::Measure;
 use super::record::Record;
 use crate::format::{count, short_seconds};
 
@@ -14,23 +15,22 @@ pub fn title() -> String {
 /// A record as a row.
 pub fn line(r: &Record) -> String {
     let name = format!("{} x{:.4}", r.case.series.name(), r.case.refinement);
-    let Some(error) = r.error() else { return format!("  {name:<28} {}", r.status) };
-    let predicted = r.predicted.map_or(String::new(), |p| format!("{:.3}, {:.2e}", p.cpu, p.error));
+    if !r.is_done() {
+        return format!("  {name:<28} {}", r.status);
+    }
+    let of = |error: f64| if error.is_finite() { format!("{error:.2e}") } else { "-".to_owned() };
+    let error = of(r.error().unwrap_or(f64::NAN));
+    let predicted = r.predicted.map_or(String::new(), |p| format!("{:.3}, {}", p.cpu, of(p.error)));
     format!(
-        "  {name:<28} {:>7} {:>8} {:>7} {:>10.3} {:>8.1} {error:>10.2e}   {predicted}",
+        "  {name:<28} {:>7} {:>8} {:>7} {:>10.3} {:>8.1} {error:>10}   {predicted}",
         r.cells, r.dofs, r.steps, r.cpu, r.memory
     )
 }
 
 /// `for an error of 1 % use rk-dgfem S3 on 60 cells: 180.2 ms (error 6.31e-3)`.
-pub fn answer(error: f64, record: &Record) -> String {
+pub fn answer(measure: &Measure, error: f64, record: &Record) -> String {
     let (name, cells) = (record.case.series.name(), count(record.cells, "cell"));
     let found = record.error().unwrap_or(f64::NAN);
-    let error = percent(error);
+    let error = measure.words(error);
     format!("  for an error of {error:<8} use {name} on {cells}: {} (error {found:.2e})", short_seconds(record.cpu))
-}
-
-/// 1 %, 0.01 %; below that as a power of ten.
-pub fn percent(error: f64) -> String {
-    if error >= 0.9e-5 { format!("{} %", (error * 1e8).round() / 1e6) } else { format!("{error:.0e}") }
 }

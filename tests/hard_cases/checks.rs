@@ -2,6 +2,7 @@
 
 use super::run::Finished;
 use super::{Verdict, exact};
+use dgmpm::parts::quantity;
 
 /// A criterion that a run is checked by.
 pub struct Check {
@@ -168,17 +169,7 @@ impl Plateau {
     /// 10 to 90 % of the jump within three cells.
     pub fn narrow(self) -> Check {
         check("width", move |run| {
-            let width = |(_, rows): &(f64, Vec<[f64; 2]>)| {
-                // The last place, from the left, where the value is above a level.
-                let place = |level: f64| {
-                    let crossing = rows.windows(2).rfind(|pair| pair[0][1] > level && pair[1][1] <= level);
-                    crossing.map_or(f64::NAN, |pair| {
-                        let [[x, a], [y, b]] = [pair[0], pair[1]];
-                        x + (y - x) * (a - level) / (a - b)
-                    })
-                };
-                (place(0.1) - place(0.9)) / self.cell
-            };
+            let width = |(_, rows): &(f64, Vec<[f64; 2]>)| quantity::width(rows).0 / self.cell;
             let most = largest(self.relative(run).iter().map(width));
             verdict("front (10 to 90 %) at most 3 cells wide", format!("{most:.2} cells"), most <= 3.0)
         })
@@ -188,9 +179,7 @@ impl Plateau {
 /// A field of a line stays in a range, but for .5 % of its length.
 pub fn overshoot(of: [&'static str; 2], range: [f64; 2]) -> Check {
     check("overshoot", move |run| {
-        let [low, high] = range;
-        let values = run.line(of[0]).column(of[1]);
-        let most = largest(values.iter().map(|x| (x - high).max(low - x).max(0.0) / (high - low)));
+        let most = quantity::overshoot(run.line(of[0]).column(of[1]).into_iter(), range);
         verdict(format!("{} overshoots by less than .5 %", of[1]), percent(most), most < 5e-3)
     })
 }

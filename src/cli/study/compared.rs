@@ -24,7 +24,11 @@ pub struct Compared {
     /// degree more than the largest, on the finest mesh]
     #[arg(long, value_name = "N,R", value_delimiter = ',', num_args = 1)]
     reference: Vec<f64>,
-    /// Find and run the cheapest setting with this standard error, such as 1e-3
+    /// What settings are compared and chosen by: standard, l1 (against the exact solution or a finer run), or the name of a
+    /// [[quantity]] of the scene (by its relative error)
+    #[arg(long, value_name = "NAME", default_value = "standard")]
+    measure: String,
+    /// Find and run the cheapest setting with this error, such as 1e-3
     #[arg(long, value_name = "E", conflicts_with = "seconds", allow_negative_numbers = true)]
     error: Option<f64>,
     /// Find and run the most accurate setting that takes so many CPU seconds
@@ -42,6 +46,7 @@ impl Compared {
             refinements: self.refine.clone(),
             layouts: self.layouts.clone(),
             reference: self.reference.clone(),
+            measure: self.measure.clone(),
             error: self.error,
             seconds: self.seconds,
         }

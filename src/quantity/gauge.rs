@@ -1,0 +1,111 @@
+//! The observer of all quantities of a run.
+
+use super::reading::Reading;
+use super::{Quantity, Seen, When};
+use crate::error::Error;
+use crate::exact::Exact;
+use crate::observe::{self, NewGrid, Observer, Schedule, View};
+use cpu_time::ProcessTime;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A quantity under its name.
+pub struct Named {
+    /// The name in scene and results.
+    pub name: String,
+    /// Its unit; empty for a pure number.
+    pub unit: &'static str,
+    /// When it is taken.
+    pub when: When,
+    /// What it is.
+    pub quantity: Box<dyn Quantity>,
+}
+
+/// What came of a quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Its name.
+    pub name: String,
+    /// Its unit; empty for a pure number.
+    pub unit: &'static str,
+    /// Its number; NaN where the run did not get to its time, or where there is none.
+    pub value: f64,
+    /// The number that the exact solution has, where it is known.
+    pub exact: Option<f64>,
+}
+
+/// Takes the quantities of a run, and nothing else: it writes no file.
+pub struct Gauge {
+    all: Vec<(Named, Reading)>,
+    exact: Option<Arc<dyn Exact>>,
+    expected: Vec<Option<f64>>,
+    schedule: Schedule,
+    /// The law of each cell.
+    material: Vec<usize>,
+    /// What the quantities have cost so far: CPU seconds and seconds on the clock.
+    pub cost: [f64; 2],
+}
+
+impl Gauge {
+    /// For these quantities. `material` gives the law of each cell. Where an exact solution is given, its numbers are found too.
+    pub fn new(all: Vec<Named>, material: &[usize], exact: Option<Arc<dyn Exact>>) -> Self {
+        // States between start and end are looked at only where a quantity needs them.
+        let at_end = all.iter().all(|named| named.when == When::End);
+        let times = if at_end { observe::When::At(vec![]) } else { observe::When::EverySteps(1) };
+        let (schedule, expected) = (Schedule::new(times, false).with_end(), vec![None; all.len()]);
+        let with_reading = |named: Named| {
+            let reading = Reading::new(named.when);
+            (named, reading)
+        };
+        let all = all.into_iter().map(with_reading).collect();
+        Self { all, exact, expected, schedule, material: material.to_vec(), cost: [0.0; 2] }
+    }
+
+    /// What came of all quantities.
+    pub fn measured(&self) -> Vec<Measured> {
+        let of = |((named, reading), exact): (&(Named, Reading), &Option<f64>)| Measured {
+            name: named.name.clone(),
+            unit: named.unit,
+            value: reading.value,
+            exact: *exact,
+        };
+        self.all.iter().zip(&self.expected).map(of).collect()
+    }
+
+    fn look(&mut self, view: &View) {
+        let (time, last) = (view.state.time, view.dt == 0.0);
+        let seen = Seen::new(view.mesh, view.scheme, view.state, &self.material);
+        for ((named, reading), expected) in self.all.iter_mut().zip(&mut self.expected) {
+            if reading.needs(time, view.dt) {
+                reading.take(time, named.quantity.of(&seen));
+            }
+            let at = match named.when {
+                When::End => time,
+                When::At(at) => at,
+                When::Over(_) => continue,
+            };
+            if let Some(exact) = self.exact.as_ref().filter(|_| last) {
+                *expected = named.quantity.exact(exact.as_ref(), &seen, at);
+            }
+        }
+    }
+}
+
+impl Observer for &mut Gauge {
+    fn schedule(&mut self) -> &mut Schedule {
+        &mut self.schedule
+    }
+
+    fn observe(&mut self, view: &View) -> Result<(), Error> {
+        let (cpu, wall) = (ProcessTime::now(), Instant::now());
+        self.look(view);
+        self.cost[0] += cpu.elapsed().as_secs_f64();
+        self.cost[1] += wall.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    fn regrid(&mut self, grid: &NewGrid) -> Result<(), Error> {
+        self.material = grid.material.to_vec();
+        self.all.iter_mut().try_for_each(|(named, _)| named.quantity.moved(grid.mesh))
+    }
+}

@@ -1,0 +1,134 @@
+//! From the numbers of single states to the one of a run.
+
+names! {
+    /// What is taken of the numbers of all states of a run.
+    Statistic {
+        /// The largest.
+        Max = "max",
+        /// The smallest.
+        Min = "min",
+        /// The mean over time.
+        Mean = "mean",
+    }
+}
+
+/// When a quantity is taken.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum When {
+    /// At the end of the run.
+    End,
+    /// At a time, s: between the states before and after it, on a straight line.
+    At(f64),
+    /// Over all states of the run.
+    Over(Statistic),
+}
+
+/// Two times count as equal within this share of them.
+const SAME: f64 = 1e-12;
+
+/// What is known of a quantity so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Reading {
+    when: When,
+    /// Its number; NaN before there is one.
+    pub value: f64,
+    /// Whether a number at a time is known, or can never be: the run has begun behind it.
+    settled: bool,
+    /// Time and number of the state that was taken last.
+    last: Option<[f64; 2]>,
+    /// int q dt, and the time that it begins at, of a mean.
+    sum: [f64; 2],
+}
+
+impl Reading {
+    /// Before the first state.
+    pub fn new(when: When) -> Self {
+        Self { when, value: f64::NAN, settled: false, last: None, sum: [0.0; 2] }
+    }
+
+    /// Whether the number of the state at `time` is needed; `dt` is the step that follows, 0 at the end of the run.
+    pub fn needs(&self, time: f64, dt: f64) -> bool {
+        match self.when {
+            When::End => dt == 0.0,
+            When::Over(_) => true,
+            // The last state before, and the first that is not.
+            When::At(at) => !self.settled && time + 1.5 * dt >= at,
+        }
+    }
+
+    /// Takes the number of a state.
+    pub fn take(&mut self, time: f64, value: f64) {
+        match (self.when, self.last) {
+            (When::End, _) => self.value = value,
+            (When::At(at), _) if time < at => {}
+            (When::At(at), None) => {
+                // A sum of steps may be a rounding behind the start.
+                self.value = if time - at <= SAME * time.abs() { value } else { f64::NAN };
+                self.settled = true;
+            }
+            (When::At(at), Some([before, of_before])) => {
+                self.value = of_before + (at - before) / (time - before) * (value - of_before);
+                self.settled = true;
+            }
+            // A state without a number, such as one without a front, does not count.
+            (When::Over(Statistic::Max), _) => self.value = self.value.max(value),
+            (When::Over(Statistic::Min), _) => self.value = self.value.min(value),
+            (When::Over(Statistic::Mean), None) => (self.value, self.sum) = (value, [0.0, time]),
+            (When::Over(Statistic::Mean), Some([before, of_before])) => {
+                self.sum[0] += 0.5 * (time - before) * (value + of_before);
+                self.value = self.sum[0] / (time - self.sum[1]);
+            }
+        }
+        self.last = Some([time, value]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of q(t) in steps of .1 up to 1.
+    fn reading(when: When, q: impl Fn(f64) -> f64) -> (f64, usize) {
+        let (mut reading, mut taken) = (Reading::new(when), 0);
+        for n in 0..=10 {
+            let (time, dt) = (0.1 * f64::from(n), if n == 10 { 0.0 } else { 0.1 });
+            if reading.needs(time, dt) {
+                reading.take(time, q(time));
+                taken += 1;
+            }
+        }
+        (reading.value, taken)
+    }
+
+    #[test]
+    fn an_end_a_time_and_statistics_of_a_line() {
+        let line = |t: f64| 3.0 - 2.0 * t;
+        // A line is found by a straight line and by the trapezoidal rule; a few roundings.
+        for (when, expected, states) in [
+            (When::End, 1.0, 1),
+            (When::At(0.44), 2.12, 3),
+            (When::At(0.0), 3.0, 1),
+            (When::At(1.0), 1.0, 3),
+            (When::Over(Statistic::Max), 3.0, 11),
+            (When::Over(Statistic::Min), 1.0, 11),
+            (When::Over(Statistic::Mean), 2.0, 11),
+        ] {
+            let (value, taken) = reading(when, line);
+            assert!((value - expected).abs() < 1e-14, "{when:?}: {value}");
+            assert!(taken <= states, "{when:?}: {taken} states");
+        }
+    }
+
+    #[test]
+    fn a_run_that_begins_behind_a_time_has_no_number_for_it() {
+        assert!(reading(When::At(-0.1), |t| t).0.is_nan());
+    }
+
+    #[test]
+    fn states_without_a_number_do_not_count_in_a_maximum() {
+        let (value, _) = reading(When::Over(Statistic::Max), |t| if t < 0.5 { f64::NAN } else { t });
+        assert_eq!(value, 1.0);
+        assert!(reading(When::End, |_| f64::NAN).0.is_nan());
+    }
+}
