@@ -3,7 +3,7 @@
 //! A [`Sensor`] marks the cells whose jumps are too large for a smooth solution; a [`CellLimiter`] cuts the modes of these cells back to
 //! what their neighbours allow. Other cells keep their bits. Where a law has internal variables, which stay at their points, the
 //! momentum alone is limited: another F with the internal variables of the old one would be another elastic strain (a copper bar makes 10 % of
-//! its energy so).
+//! its energy so). The displacement of a cell whose F is limited follows it in the mean; its velocity alone would not know.
 //!
 //! For ADER a limiter acts after the corrector and the control of the curl, for Runge-Kutta after each stage. Rotations of a cell that
 //! it leaves behind are for the control of the curl of the next step.
@@ -27,6 +27,7 @@ pub use vertex::VertexLimiter;
 
 use crate::lane::LANES;
 use crate::operators::Operators;
+use crate::riemann::Looks;
 use crate::state::UNKNOWNS;
 use crate::step::{Corrected, Correction, Made, Notes, Scheme};
 use crate::tensor::DEFORMATION;
@@ -76,6 +77,10 @@ impl<K: CellLimiter> Limiter<K> {
         }
         energy::hold(cell.law(), &weights[..n], &old, &mut new);
         new.store(block.u, n, lane);
+        // A displacement whose jumps the flux holds has energy of its own.
+        if first == 0 && made.scheme.flux.looks() != Looks::Displacement {
+            made.scheme.follow(block.number, lane, block.u);
+        }
         true
     }
 }

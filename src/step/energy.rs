@@ -216,7 +216,7 @@ impl Scheme {
     }
 
     /// The gradient of a component of a block at node a.
-    fn gradient(&self, u: &[F8], block: usize, lane: usize, a: usize, component: usize) -> [f64; 2] {
+    pub(super) fn gradient(&self, u: &[F8], block: usize, lane: usize, a: usize, component: usize) -> [f64; 2] {
         let (line, n) = (&self.operators.line, self.operators.nodes());
         let (m, i, j) = (line.m, a / line.m, a % line.m);
         let metric = self.operators.geometry.blocks[block].lane(lane);

@@ -40,6 +40,7 @@ mod rotation;
 mod runge_kutta;
 mod schedule;
 mod scheme;
+mod shape;
 mod sources;
 mod stage;
 mod sums;

@@ -11,11 +11,11 @@
 
 use super::{Loss, Scheme, Survey, Work, with_scratch};
 use crate::lane::{F8, LANES, Lanes};
-use crate::mesh::{FACES, map};
+use crate::mesh::FACES;
 use crate::operators::{Neighbour, with_nodes};
-use crate::state::{State, UNKNOWNS};
+use crate::state::State;
 use crate::step::volume::Masses;
-use crate::tensor::{self, DEFORMATION, dot};
+use crate::tensor::{self, DEFORMATION};
 use rayon::prelude::*;
 
 /// When a cell is rescued.
@@ -227,32 +227,19 @@ fn count(work: &mut Work) {
     }
 }
 
-/// Replaces F and p of some lanes of a block by their mean over the cell, mean U = sum_a w_a J_a U_a / sum_a w_a J_a, and the
-/// displacement, where it is carried, by mean u + (mean F - 1)(X - mean X): the velocity of a constant cell would leave its gradient as
-/// it is, while the faces change F.
+/// Replaces all unknowns of some lanes of a block by their mean over the cell, sum_a w_a J_a U_a / sum_a w_a J_a. The displacement, where
+/// it is carried, gets the gradient of the mean F: the velocity of a constant cell would leave its gradient as it is, while the faces
+/// change F.
 pub(super) fn flatten(scheme: &Scheme, block: usize, lanes: u8, u: &mut [F8]) {
-    let operators = &scheme.operators;
-    let (n, m) = (operators.nodes(), operators.line.m);
+    let n = scheme.operators.nodes();
     for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
-        let weights = operators.node_weights(block, lane);
+        let weights = scheme.operators.node_weights(block, lane);
         let area: f64 = weights[..n].iter().sum();
-        let mean = |value: &dyn Fn(usize) -> f64| (0..n).map(|a| weights[a] * value(a)).sum::<f64>() / area;
-        let mut means = [0.0; UNKNOWNS];
-        for (values, out) in u.chunks_exact_mut(n).zip(&mut means) {
-            *out = mean(&|a| values[a].0[lane]);
-            values.iter_mut().for_each(|value| value.0[lane] = *out);
+        for values in u.chunks_exact_mut(n) {
+            let sum: f64 = weights.iter().zip(&*values).map(|(weight, value)| weight * value.0[lane]).sum();
+            values.iter_mut().for_each(|value| value.0[lane] = sum / area);
         }
-        let corners = operators.geometry.corners_of(block, lane);
-        let nodes = &operators.line.basis.nodes;
-        let place = |a: usize| map::position(&corners, [nodes[a / m], nodes[a % m]]);
-        let middle = [0, 1].map(|axis| mean(&|a| place(a)[axis]));
-        for (i, values) in u.chunks_exact_mut(n).skip(UNKNOWNS).enumerate() {
-            let (mut row, average) = ([means[2 * i], means[2 * i + 1]], mean(&|a| values[a].0[lane]));
-            row[i] -= 1.0;
-            for (a, value) in values.iter_mut().enumerate() {
-                value.0[lane] = average + dot(row, [0, 1].map(|axis| place(a)[axis] - middle[axis]));
-            }
-        }
+        scheme.follow(block, lane, u);
     }
 }
 

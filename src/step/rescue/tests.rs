@@ -1,6 +1,7 @@
 //! What the rescue holds: it acts where a step is lost and nowhere else, and keeps mass, momentum and mean F.
 use super::*;
 use crate::boundary::{Boundary, Free};
+use crate::state::UNKNOWNS;
 use crate::step::tests::{KINDS, Kind, distorted, midpoints, scheme, state, wavy};
 use crate::step::{Balance, Motion};
 use std::sync::Arc;
