@@ -9,7 +9,7 @@ help:
 	@echo "make demo    install what is missing, build, run the paper's impact with all methods, draw its figures"
 	@echo "make test    install what is missing, run every test"
 	@echo "make study   measure what accuracy costs in time: the tables and plots of docs/cost.md, again"
-	@echo "make hard-cases   run all hard cases (ten minutes) and write docs/hard_cases.md and docs/hard/, again"
+	@echo "make hard-cases   run all hard cases (twenty minutes) and write docs/hard_cases.md and docs/hard/, again"
 	@echo "make bench   measure the speed (ten minutes): runs/bench/, docs/performance.md, docs/img/roofline.svg"
 	@echo "make build   the program; its last line says where cargo has put it"
 	@echo "make setup   only install what is missing (Debian packages, .venv)"

@@ -1,6 +1,6 @@
 """Writes the meshes of this folder that `[mesh] rectangle` cannot say: python3 make_meshes.py. They are stored; nothing calls this."""
 
-from math import radians, tan
+from math import radians, sin, tan
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -59,6 +59,9 @@ def main():
     x = [0.1 * i for i in range(6)] + [0.502] + [0.6 + 0.1 * i for i in range(5)] + [1.002]
     x += [1.1 + 0.1 * i for i in range(20)]
     write("slivers", len(x) - 1, 4, lambda i, j: (x[i], 0.1 * j), sides(3.0, 0.4))
+    # A unit square whose inner nodes are moved by up to .2 of a cell, the same each time.
+    shift = lambda k, i, j: 0.2 * sin(12.9898 * i + 78.233 * j + k) if 0 < i < 6 and 0 < j < 6 else 0.0  # noqa: E731
+    write("distorted", 6, 6, lambda i, j: ((i + shift(0, i, j)) / 6, (j + shift(2, i, j)) / 6), sides(1.0, 1.0))
     # A bar whose cells are chevrons with angles of 20 degrees; the ends are straight.
     reach = 0.1 / tan(radians(20.0))
     ramp = lambda i: min(1.0, i / 6, (30 - i) / 6)  # noqa: E731

@@ -107,6 +107,16 @@ pub fn monotone() -> Check {
     })
 }
 
+/// Energy grows by less than a growth of the state by `growth` a step lets expect.
+pub fn budget(growth: f64) -> Check {
+    check("budget", move |run| {
+        let (share, steps) = (run.number(&["energy_made", "share"]), run.number(&["steps"]));
+        let budget = (2.0 * growth * steps).exp_m1();
+        let figure = format!("{share:.1e} in {steps} steps, budget {budget:.1e}");
+        verdict("energy rises by less than the growth that is printed before the run", figure, share <= budget)
+    })
+}
+
 /// Rows of a line, by time: t, places and values.
 fn by_time(run: &Finished, line: &str, field: &str) -> Vec<(f64, Vec<[f64; 2]>)> {
     let table = run.line(line);
