@@ -69,11 +69,11 @@ impl<K: CellLimiter> Limiter<K> {
         let mut new = old.clone();
         let first = if cell.law().has_memory() { DEFORMATION } else { 0 };
         let values = self.legendre.values(&modes.of);
-        for k in first..UNKNOWNS {
-            // Modes of the parent cell are not orthogonal with J: a constant brings the mean back.
-            let moved = (0..n).map(|a| weights[a] * (old.of[a][k] - values[a][k]));
-            let shift = moved.sum::<f64>() / area;
-            (0..n).for_each(|a| new.of[a][k] = values[a][k] + shift);
+        // Modes of the parent cell are not orthogonal with J: a constant brings the means back.
+        let shifts: [f64; UNKNOWNS] =
+            std::array::from_fn(|k| (0..n).map(|a| weights[a] * (old.of[a][k] - values[a][k])).sum::<f64>() / area);
+        for (new, values) in new.of[..n].iter_mut().zip(&values) {
+            (first..UNKNOWNS).for_each(|k| new[k] = values[k] + shifts[k]);
         }
         energy::hold(cell.law(), &weights[..n], &old, &mut new);
         new.store(block.u, n, lane);
