@@ -28,7 +28,7 @@ pub struct Rescue {
 impl Default for Rescue {
     /// Energy that the paper's impact (30 x 30 cells, to 1.77 ms) makes out of nothing, as a share of the start: at 4000 m/s, S2, .59 %
     /// with one layer and .5, 0 with two layers and .7 or .8; at 6000 m/s, S1, it is lost with one layer and .5, makes 5.6 % with one
-    /// layer and .8, .14 % with two layers and .7, 0 with two layers and .8. At 2000 m/s no cell is rescued with .8.
+    /// layer and .8, .14 % with two layers and .7, .002 % with two layers and .8. At 2000 m/s no cell is rescued with .8.
     fn default() -> Self {
         Self { trigger: 0.8 }
     }
