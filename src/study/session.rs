@@ -44,6 +44,9 @@ pub struct Plan {
     pub reference: Option<(usize, f64)>,
 }
 
+/// The plots, and the names of their files.
+const PLOTS: [(Axis, &str); 2] = [(Axis::Seconds, "error_over_seconds"), (Axis::Dofs, "error_over_dofs")];
+
 /// A study under way.
 pub struct Session<'a> {
     study: Study<'a>,
@@ -303,14 +306,21 @@ impl Session<'_> {
     /// The plots of error over seconds and unknowns; none where no error of a run that went well is known.
     fn plots(&self) -> Result<()> {
         let (records, measure) = (&self.study.records, &self.plan.measure);
-        let known = records.iter().any(|r| r.error().is_some());
-        if !known && records.iter().any(Record::is_done) {
-            self.say(format!("no plot: no run has a known {}", measure.label()));
+        let paths =
+            PLOTS.map(|(axis, name)| (axis, ["svg", "png"].map(|ending| self.out.join(name).with_extension(ending))));
+        if !records.iter().filter_map(Record::error).any(|error| error > 0.0) {
+            let why = match (records.iter().any(|r| r.error().is_some()), records.iter().any(Record::is_done)) {
+                (true, _) => "all errors are 0".to_owned(),
+                (false, true) => format!("no run has a known error by `{}`", measure.name()),
+                (false, false) => "no run went well".to_owned(),
+            };
+            self.say(format!("no plot: {why}"));
+            // Those of an earlier study in this folder would be taken for plots of this one.
+            paths.iter().flat_map(|(_, paths)| paths).for_each(|path| drop(std::fs::remove_file(path)));
             return Ok(());
         }
-        for (axis, name) in [(Axis::Seconds, "error_over_seconds"), (Axis::Dofs, "error_over_dofs")] {
-            for ending in ["svg", "png"] {
-                let path = self.out.join(format!("{name}.{ending}"));
+        for (axis, paths) in paths {
+            for path in paths {
                 plot(records, axis, &self.study.scene.title, measure, &path)?;
             }
         }
@@ -336,7 +346,8 @@ impl Session<'_> {
             return Error::input("no setting of the study can meet this", "allow more, or other --degrees");
         }
         let doubts = self.plan.series.iter().map(|series| format!("{}: {}", series.name(), self.doubt(series)));
-        let what = format!("no setting has a known {}: {}", measure.label(), doubts.collect::<Vec<_>>().join("; "));
+        let what =
+            format!("no setting has a known error by `{}`: {}", measure.name(), doubts.collect::<Vec<_>>().join("; "));
         Error::input(what, "give finer meshes by --refine, other --degrees, or another --measure")
     }
 

@@ -26,7 +26,7 @@ pub struct Compared {
     reference: Vec<f64>,
     /// What settings are compared and chosen by: standard, l1 (against the exact solution or a finer run), or the name of a
     /// [[quantity]] of the scene (by its relative error)
-    #[arg(long, value_name = "NAME", default_value = "standard")]
+    #[arg(long, value_name = "NAME", default_value = "standard", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     measure: String,
     /// Find and run the cheapest setting with this error, such as 1e-3
     #[arg(long, value_name = "E", conflicts_with = "seconds", allow_negative_numbers = true)]
