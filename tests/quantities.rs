@@ -129,6 +129,45 @@ fn places_are_found_again_on_another_grid() {
 }
 
 #[test]
+fn what_the_start_lacks_for_a_quantity_is_found_before_results_change() {
+    let folder = tempfile::tempdir().unwrap();
+    // Left and right are one face.
+    let sides =
+        r#"{group="left",kind="periodic",partner="right"},{group="bottom",kind="free"},{group="top",kind="free"}"#;
+    let scene = Body::square(4).method("rk-dgfem").degree(1).end(1e-5).write(folder.path(), "rest");
+    let out = folder.path().join("out");
+    std::fs::create_dir(&out).unwrap();
+    std::fs::write(out.join("summary.json"), "old").unwrap();
+    for (table, words) in [
+        (r#"{name="a",kind="force",group="left"}"#, "it is periodic"),
+        (r#"{name="a",kind="overshoot"}"#, "give `range`"),
+    ] {
+        let mut command = Command::cargo_bin("dgmpm").unwrap();
+        command.arg("run").arg(&scene).args(["--force", "--set", &format!("boundary=[{sides}]")]);
+        command.args(["--set", &format!("quantity=[{table}]"), "--out"]).arg(&out);
+        let output = command.output().unwrap();
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && message.contains(words), "{table}: {message}");
+        assert_eq!(std::fs::read_to_string(out.join("summary.json")).unwrap(), "old", "{table}");
+    }
+}
+
+#[test]
+fn a_run_that_is_lost_has_no_statistic_over_it_and_a_uniform_field_has_no_front() {
+    let folder = tempfile::tempdir().unwrap();
+    // 3.4 times as fast as waves, without limiter: cells at the wall turn inside out.
+    let body =
+        Body::square(4).side("left", "wall", "").velocity(["-20000", "0"]).method("rk-dgfem").degree(2).end(1e-3);
+    let body = quantity(body, "force", "kind = \"force\"\ngroup = \"left\"\nover = \"run\"");
+    let line = "kind = \"front-width\"\nfrom = [0, 0.5]\nto = [1, 0.5]";
+    let body = quantity(body, "width", &format!("{line}\ntime = 0"));
+    let path = Folder::new(folder.path());
+    assert!(body.problem(&[]).run_in(&path).is_err());
+    let found: Value = serde_json::from_str(&std::fs::read_to_string(path.summary()).unwrap()).unwrap();
+    assert!(found["quantities"]["force"].is_null() && found["quantities"]["width"].is_null(), "{found}");
+}
+
+#[test]
 fn what_is_wrong_with_a_quantity_is_one_message_and_exit_code_2() {
     let folder = tempfile::tempdir().unwrap();
     let scene = impact().write(folder.path(), "impact");

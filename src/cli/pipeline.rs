@@ -31,6 +31,8 @@ pub fn run(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &Run
     let problem = Setup::of(&scene).kernel(kernel).store(Store { look: &look, write: &own }).build_on(body)?;
     say(&scene.title);
     let certificates = report(&problem)?;
+    // Quantities that the start of the run has not.
+    problem.gauge()?;
     say(&problem.origin);
     folder.clear_results()?;
     write_input(&problem, files, &folder, certificates)?;

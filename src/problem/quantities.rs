@@ -25,7 +25,7 @@ impl Problem {
     /// The observer of the quantities of the scene, from its present state on; none where the scene names none.
     ///
     /// # Errors
-    /// What the mesh lacks ([`Scene::check_quantities`]).
+    /// What the mesh lacks ([`Scene::check_quantities`]), or a time before the present state.
     pub fn gauge(&self) -> Result<Option<Gauge>> {
         let Self { scene, body, scheme, state, .. } = self;
         if scene.quantities.is_empty() {
@@ -34,7 +34,11 @@ impl Problem {
         scene.check_quantities(&body.mesh)?;
         let (seen, exact) = (Seen::new(&body.mesh, scheme, state, &body.material), scene.build_exact());
         let start = Start { seen: &seen, exact: exact.as_ref() };
-        let named = scene.quantities.iter().map(|quantity| {
+        let named = scene.quantities.iter().enumerate().map(|(i, quantity)| {
+            if quantity.when.is_before(state.time) {
+                let what = format!("`time` is before the start of the run, {:e} s", state.time);
+                return Err(scene.error(&format!("quantity.{i}.time"), what, "give a later time"));
+            }
             let (kind, values) = (quantity.what.build(), &quantity.what.values);
             let (unit, made) = ((kind.unit)(values), (kind.make)(values, &start)?);
             Ok(Named { name: quantity.name.clone(), unit, when: quantity.when, quantity: made })

@@ -49,6 +49,17 @@ impl Component {
         }
     }
 
+    /// Differences below this are rounding: 1e-10 of c_p, of rho0 c_p^2 or of 1.
+    pub fn rounding(&self, law: &Law) -> f64 {
+        let c = law.pressure_speed([1.0, 0.0, 0.0, 1.0], [1.0, 0.0]);
+        1e-10
+            * match Self::unit(self.field) {
+                "m/s" => c,
+                "Pa" => law.density() * c * c,
+                _ => 1.0,
+            }
+    }
+
     /// Its number at a point.
     pub fn of(&self, law: &Law, at: &Point) -> f64 {
         let mut values = Vec::with_capacity(5);

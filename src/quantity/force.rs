@@ -3,16 +3,20 @@
 use super::extent::on_face;
 use super::{Quantity, Seen};
 use crate::boundary::{FacePoint, Moment, TimeNode};
-use crate::mesh::{FACES, map};
+use crate::error::Error;
+use crate::mesh::{FACES, Mesh, map};
 use crate::operators::Neighbour;
 use crate::riemann::{Medium, Trace};
 use crate::tensor::times;
 
 /// int t*_k dS over the faces of a boundary group, N/m (per metre of thickness): t* is the traction that the condition of the
-/// group answers the trace of the body with. The steps take the same t*.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// group answers the trace of the state with, at the Gauss points of its faces. Steps take t* of predicted traces between two states: the
+/// mean over a run is the momentum balance to .05 % on 8 x 4 cells, half of it on cells half as large.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Force {
-    /// The boundary group of the mesh, by number.
+    /// The name of the boundary group.
+    pub name: String,
+    /// Its number in the mesh.
     pub group: usize,
     /// 0 for the force along x, 1 along y.
     pub axis: usize,
@@ -28,6 +32,16 @@ impl Quantity for Force {
             (0..FACES).filter(own).for_each(|face| force += self.of_face(seen, cell, face, &mut memory));
         }
         force
+    }
+
+    fn moved(&mut self, mesh: &Mesh) -> Result<(), Error> {
+        // Another mesh may have its groups in another order.
+        let found = mesh.edge_groups.iter().position(|name| *name == self.name);
+        self.group = found.ok_or_else(|| {
+            let what = format!("the new mesh has no group \"{}\", whose force is a quantity", self.name);
+            Error::input(what, "give the boundary its old name in the new mesh")
+        })?;
+        Ok(())
     }
 }
 
@@ -62,5 +76,22 @@ impl Force {
             force -= weight * length * flux[4 + self.axis];
         }
         force
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_group_is_found_by_its_name_on_a_mesh_with_its_groups_in_another_order() {
+        let mut mesh = crate::mesh::rectangle([1.0, 1.0], [1, 1]).unwrap();
+        let group = mesh.edge_groups.iter().position(|name| name == "left").unwrap();
+        let mut force = Force { name: "left".to_owned(), group, axis: 0 };
+        mesh.edge_groups.reverse();
+        force.moved(&mesh).unwrap();
+        assert_eq!(mesh.edge_groups[force.group], "left");
+        mesh.edge_groups[force.group] = "other".to_owned();
+        assert!(force.moved(&mesh).unwrap_err().to_string().contains("no group \"left\""));
     }
 }

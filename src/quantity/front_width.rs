@@ -47,6 +47,10 @@ impl Quantity for FrontWidth {
         let (Some(first), Some(last)) = (self.line.all.first(), self.line.all.last()) else { return f64::NAN };
         let exact = self.solution.as_ref().and_then(|exact| self.exact_ends(exact.as_ref(), seen));
         let [behind, before] = self.values.or(exact).unwrap_or_else(|| [value(first), value(last)]);
+        // A field that is the same everywhere has no front.
+        if (behind - before).abs() <= self.component.rounding(solution.law(first.cell)) {
+            return f64::NAN;
+        }
         let row = |at: &Place| [at.s, (value(at) - before) / (behind - before)];
         let rows: Vec<[f64; 2]> = self.line.all.iter().map(row).collect();
         let (width, places) = width(&rows);

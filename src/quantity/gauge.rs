@@ -42,6 +42,8 @@ pub struct Gauge {
     schedule: Schedule,
     /// The law of each cell.
     material: Vec<usize>,
+    /// Whether the run has got to its end.
+    ended: bool,
     /// What the quantities have cost so far: CPU seconds and seconds on the clock.
     pub cost: [f64; 2],
 }
@@ -58,7 +60,7 @@ impl Gauge {
             (named, reading)
         };
         let all = all.into_iter().map(with_reading).collect();
-        Self { all, exact, expected, schedule, material: material.to_vec(), cost: [0.0; 2] }
+        Self { all, exact, expected, schedule, material: material.to_vec(), ended: false, cost: [0.0; 2] }
     }
 
     /// What came of all quantities.
@@ -66,7 +68,8 @@ impl Gauge {
         let of = |((named, reading), exact): (&(Named, Reading), &Option<f64>)| Measured {
             name: named.name.clone(),
             unit: named.unit,
-            value: reading.value,
+            // A statistic of a part of a run is not that of the run.
+            value: if self.ended || !matches!(named.when, When::Over(_)) { reading.value } else { f64::NAN },
             exact: *exact,
         };
         self.all.iter().zip(&self.expected).map(of).collect()
@@ -74,6 +77,7 @@ impl Gauge {
 
     fn look(&mut self, view: &View) {
         let (time, last) = (view.state.time, view.dt == 0.0);
+        self.ended |= last;
         let seen = Seen::new(view.mesh, view.scheme, view.state, &self.material);
         for ((named, reading), expected) in self.all.iter_mut().zip(&mut self.expected) {
             if reading.needs(time, view.dt) {

@@ -7,7 +7,7 @@ use crate::exact::Exact;
 use crate::mesh::Mesh;
 use std::sync::Arc;
 
-/// The largest excess of a field above or below a range, over the size of the range.
+/// The largest excess of a field above or below a range, over the size of the range; no number while the range has no size.
 pub struct Overshoot {
     /// The field.
     pub component: Component,
@@ -38,12 +38,17 @@ impl Overshoot {
         range(at.all.iter().map(value).chain([0.0]))
     }
 
+    /// Whether a range has no size but rounding, for the first law of the scheme.
+    pub fn is_empty(component: &Component, [low, high]: [f64; 2], seen: &Seen) -> bool {
+        seen.scheme.laws.first().is_some_and(|law| high - low <= component.rounding(law))
+    }
+
     /// The range of the exact solution at the places.
     fn exact_range(&self, seen: &Seen) -> Option<[f64; 2]> {
         let exact = self.solution.as_ref()?;
         let of = |at: &Place| {
             let law = seen.solution().law(at.cell);
-            self.component.exact(exact.as_ref(), law, Places::position(seen.mesh, at), seen.state.time)
+            self.component.exact(exact.as_ref(), law, Places::inside(seen.mesh, at), seen.state.time)
         };
         let values: Option<Vec<f64>> = self.at.all.iter().map(of).collect();
         Some(range(values?.into_iter()))
@@ -55,6 +60,10 @@ impl Quantity for Overshoot {
         let solution = seen.solution();
         let value = |at: &Place| self.component.of(solution.law(at.cell), &solution.at(at.cell, at.xi));
         let range = self.exact_range(seen).unwrap_or(self.range);
+        // As of an exact solution before it has moved.
+        if Self::is_empty(&self.component, range, seen) {
+            return f64::NAN;
+        }
         overshoot(self.at.all.iter().map(value), range)
     }
 

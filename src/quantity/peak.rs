@@ -46,7 +46,7 @@ impl Quantity for Peak {
 
     fn exact(&self, exact: &dyn Exact, seen: &Seen, time: f64) -> Option<f64> {
         let solution = seen.solution();
-        let of = |at| Places::position(seen.mesh, at);
+        let of = |at| Places::inside(seen.mesh, at);
         let values = self.at.all.iter().map(|at| self.component.exact(exact, solution.law(at.cell), of(at), time));
         let values: Option<Vec<f64>> = values.collect();
         Some(self.extreme.of(values?.into_iter()))

@@ -27,6 +27,14 @@ pub enum When {
 /// Two times count as equal within this share of them.
 const SAME: f64 = 1e-12;
 
+impl When {
+    /// Whether a run that begins at a time, s, can never have it: only a time before the start. A sum of steps may be a rounding behind
+    /// the start.
+    pub fn is_before(self, start: f64) -> bool {
+        matches!(self, Self::At(at) if start - at > SAME * start.abs())
+    }
+}
+
 /// What is known of a quantity so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Reading {
@@ -37,7 +45,7 @@ pub(super) struct Reading {
     settled: bool,
     /// Time and number of the state that was taken last.
     last: Option<[f64; 2]>,
-    /// int q dt, and the time that it begins at, of a mean.
+    /// Of a mean: int q dt over the steps between two states that have a number, and the sum of these steps, s.
     sum: [f64; 2],
 }
 
@@ -62,9 +70,8 @@ impl Reading {
         match (self.when, self.last) {
             (When::End, _) => self.value = value,
             (When::At(at), _) if time < at => {}
-            (When::At(at), None) => {
-                // A sum of steps may be a rounding behind the start.
-                self.value = if time - at <= SAME * time.abs() { value } else { f64::NAN };
+            (When::At(_), None) => {
+                self.value = if self.when.is_before(time) { f64::NAN } else { value };
                 self.settled = true;
             }
             (When::At(at), Some([before, of_before])) => {
@@ -74,11 +81,14 @@ impl Reading {
             // A state without a number, such as one without a front, does not count.
             (When::Over(Statistic::Max), _) => self.value = self.value.max(value),
             (When::Over(Statistic::Min), _) => self.value = self.value.min(value),
-            (When::Over(Statistic::Mean), None) => (self.value, self.sum) = (value, [0.0, time]),
-            (When::Over(Statistic::Mean), Some([before, of_before])) => {
+            (When::Over(Statistic::Mean), Some([before, of_before])) if !of_before.is_nan() && !value.is_nan() => {
                 self.sum[0] += 0.5 * (time - before) * (value + of_before);
-                self.value = self.sum[0] / (time - self.sum[1]);
+                self.sum[1] += time - before;
+                self.value = self.sum[0] / self.sum[1];
             }
+            // A single state is its own mean.
+            (When::Over(Statistic::Mean), _) if self.sum[1] == 0.0 && !value.is_nan() => self.value = value,
+            (When::Over(Statistic::Mean), _) => {}
         }
         self.last = Some([time, value]);
     }
@@ -126,9 +136,11 @@ mod tests {
     }
 
     #[test]
-    fn states_without_a_number_do_not_count_in_a_maximum() {
-        let (value, _) = reading(When::Over(Statistic::Max), |t| if t < 0.5 { f64::NAN } else { t });
-        assert_eq!(value, 1.0);
+    fn states_without_a_number_do_not_count_in_a_maximum_and_a_mean() {
+        let late = |t: f64| if t < 0.45 { f64::NAN } else { t };
+        assert_eq!(reading(When::Over(Statistic::Max), late).0, 1.0);
+        // The mean of t from .5 to 1; some roundings.
+        assert!((reading(When::Over(Statistic::Mean), late).0 - 0.75).abs() < 1e-14);
         assert!(reading(When::End, |_| f64::NAN).0.is_nan());
     }
 }

@@ -22,7 +22,7 @@ impl Quantity for PointValue {
 
     fn exact(&self, exact: &dyn Exact, seen: &Seen, time: f64) -> Option<f64> {
         let place = self.at.all.first()?;
-        self.component.exact(exact, seen.solution().law(place.cell), Places::position(seen.mesh, place), time)
+        self.component.exact(exact, seen.solution().law(place.cell), Places::inside(seen.mesh, place), time)
     }
 
     fn moved(&mut self, mesh: &Mesh) -> Result<(), Error> {

@@ -2,11 +2,12 @@
 
 use super::outputs::{field_names, has, known_fields};
 use super::{ANY, Chosen, Entry, FINITE, Fault, Field, Form, Parameter, Preset, Table, Values, quoted};
-use crate::error;
+use crate::error::{self, Error};
 use crate::exact::Exact;
 use crate::mesh::Mesh;
 use crate::names::did_you_mean;
 use crate::observe::Samples;
+use crate::operators::Neighbour;
 use crate::quantity::{
     Component, Energy, Extent, Extreme, Force, FrontWidth, Length, Outside, Overshoot, Part, Peak, Places, PointValue,
     Quantity, Seen,
@@ -128,7 +129,7 @@ pub static QUANTITIES: Table<Kind> = Table::new(&[
     },
     Entry {
         name: "extent",
-        about: "how far the deformed body reaches along an axis, such as the final length of a bar",
+        about: "how far the deformed body reaches along an axis, such as the final length of a bar; displacements count from the start, whatever F is there",
         parameters: &[AXIS],
         check: ANY,
         build: Kind {
@@ -141,7 +142,7 @@ pub static QUANTITIES: Table<Kind> = Table::new(&[
     },
     Entry {
         name: "length",
-        about: "the distance of two points of the material in the deformed body",
+        about: "the distance of two points of the material in the deformed body; displacements count from the start, whatever F is there",
         parameters: &[
             Parameter::required("from", "one point", "m", Form::Vector(FINITE)),
             Parameter::required("to", "the other point", "m", Form::Vector(FINITE)),
@@ -171,7 +172,15 @@ pub static QUANTITIES: Table<Kind> = Table::new(&[
             make: |of, start| {
                 // The check has found the group.
                 let group = group(of, start.seen.mesh).unwrap_or(usize::MAX);
-                Ok(Box::new(Force { group, axis: axis(of) }))
+                let mut faces = start.seen.scheme.operators.blocks.neighbours.iter().flatten().flatten();
+                if group != usize::MAX && !faces.any(|there| *there == Neighbour::Boundary(group)) {
+                    let what = format!(
+                        "no face of \"{}\" is a boundary: it is periodic, or inside the body",
+                        of.text("group")
+                    );
+                    return Err(lacks("force", &what, "name a group on which a condition acts"));
+                }
+                Ok(Box::new(Force { name: of.text("group").to_owned(), group, axis: axis(of) }))
             },
         },
     },
@@ -290,11 +299,21 @@ pub static QUANTITIES: Table<Kind> = Table::new(&[
                 let given = of.has("range").then(|| of.vector("range"));
                 let range = given.unwrap_or_else(|| Overshoot::range_of(&component, &at, seen));
                 let solution = exact.filter(|_| given.is_none()).cloned();
+                if given.is_none() && solution.is_none() && Overshoot::is_empty(&component, range, seen) {
+                    let what =
+                        "the field is the same everywhere at the start: there is no range that it should stay in";
+                    return Err(lacks("overshoot", what, "give `range`"));
+                }
                 Ok(Box::new(Overshoot { component, at, range, solution }))
             },
         },
     },
 ]);
+
+/// A fault of a quantity at the start of a run.
+fn lacks(kind: &str, what: &str, remedy: &str) -> Error {
+    Error::input(format!("[[quantity]] of kind \"{kind}\": {what}"), remedy)
+}
 
 fn axis(of: &Values) -> usize {
     usize::from(of.text("axis") == AXES[1])
