@@ -86,6 +86,7 @@ mod state;
 mod material;
 mod riemann;
 mod boundary;
+mod contact;
 mod source;
 mod step;
 mod limiter;

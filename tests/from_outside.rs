@@ -218,7 +218,7 @@ fn register() {
         let build = fluxes::Flux { make: || Flux::new(LaxFriedrichs), when_lost: |_| None };
         FLUXES.add(Entry { name: "lax-friedrichs", about, parameters: &[], check: ANY, build }).unwrap();
         const GAP: &[Parameter] = &[Parameter::required("gap", "the gap at the start", "m", Form::Number(FINITE))];
-        let build = Condition { make: |of| Arc::new(GapWall { gap: [of.number("gap")] }), partner: None };
+        let build = Condition::of(|of| Arc::new(GapWall { gap: [of.number("gap")] }));
         CONDITIONS.add(Entry { name: "gap-wall", about, parameters: GAP, check: ANY, build }).unwrap();
         const RATE: &[Parameter] = &[Parameter::required("rate", "c in b = -c v", "1/s", Form::Number(POSITIVE))];
         let build: fn(&dgmpm::registry::Values, Option<usize>) -> Arc<dyn Source> =

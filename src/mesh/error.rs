@@ -106,6 +106,14 @@ pub enum Error {
         /// The names of both groups.
         groups: [String; 2],
     },
+    /// A cut of one edge, both ends of which are tips.
+    #[error("the edge {} of the group `{group}` lies alone inside of the body: a cut there has no node that could open", points(.at))]
+    ShortCrack {
+        /// The ends of the edge.
+        at: [[f64; 2]; 2],
+        /// The name of its group.
+        group: String,
+    },
     /// Two periodic groups that cannot be joined edge by edge.
     #[error("the periodic groups `{}` and `{}` have {} and {} boundary edges", .groups[0], .groups[1], .counts[0], .counts[1])]
     PeriodicCount {
@@ -154,6 +162,9 @@ impl Error {
                 "merge them (in Gmsh `Coherence Mesh;`, or `Geometry.AutoCoherence = 1;` before meshing); where a gap of width 0 is meant, put the edges of both sides into groups"
             }
             Error::TwoGroups { .. } => "keep each curve in one `Physical Curve` only",
+            Error::ShortCrack { .. } => {
+                "give the crack two edges or more (a finer mesh), or let it begin at the boundary"
+            }
             Error::PeriodicCount { .. } | Error::PeriodicMismatch { .. } => {
                 "a translation must take one group to the other: give both the same shape and divisions (in Gmsh `Periodic Curve` and equal `Transfinite Curve`)"
             }

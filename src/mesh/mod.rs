@@ -9,6 +9,7 @@ pub mod parts;
 pub mod periodic;
 pub mod quality;
 mod refine;
+mod split;
 pub mod structured;
 mod summary;
 

@@ -31,8 +31,7 @@ impl Files {
     /// A mesh that cannot be read, or whose groups are not those of the scene.
     pub fn mesh(&self, scene: &Scene) -> Result<Mesh> {
         let Some(path) = &self.mesh else { return scene.build_mesh() };
-        let mesh = read_mesh(path)?;
-        scene.check_mesh(&mesh)?;
+        let mesh = scene.cut_mesh(read_mesh(path)?)?;
         scene.check_exact_materials(&mesh)?;
         Ok(mesh)
     }

@@ -15,7 +15,7 @@ use crate::run::Limits as WatchLimits;
 use crate::run::Settings;
 use crate::scene::{self, Boundary, Mesh as Source, Scene, Step};
 use crate::source;
-use crate::step::{Control, Correction, Law, Method as Integration, Rescue, Scheme, cfl};
+use crate::step::{Control, Correction, Law, Method as Integration, Pairing, Rescue, Scheme, cfl};
 use std::sync::Arc;
 
 impl Scene {
@@ -32,7 +32,7 @@ impl Scene {
             }
             Source::File(path) => read_mesh(&self.existing("mesh.file", path)?)?,
         };
-        self.check_mesh(&mesh)?;
+        let mesh = self.cut_mesh(mesh)?;
         self.check_exact_materials(&mesh)?;
         Ok(mesh)
     }
@@ -41,7 +41,7 @@ impl Scene {
     pub fn periodic_groups(&self, mesh: &Mesh) -> Vec<[usize; 2]> {
         let number = |name: &str| mesh.edge_groups.iter().position(|group| group == name);
         let mut pairs: Vec<[usize; 2]> = Vec::new();
-        for boundary in &self.boundaries {
+        for boundary in self.boundaries.iter().filter(|boundary| boundary.is_joined()) {
             let Some((_, partner)) = boundary.partner() else { continue };
             // `check_mesh` has refused groups that the mesh lacks.
             let (Some(a), Some(b)) = (number(&boundary.group), number(partner)) else { continue };
@@ -50,6 +50,25 @@ impl Scene {
             }
         }
         pairs
+    }
+
+    /// What acts between boundary groups.
+    pub fn pairings(&self, mesh: &Mesh) -> Vec<Pairing> {
+        let number = |name: &str| mesh.edge_groups.iter().position(|group| group == name);
+        let of = |boundary: &Boundary| {
+            let law = boundary.condition.build().interaction?(&boundary.condition.values);
+            let partner = boundary.partner().map_or(boundary.group.as_str(), |(_, group)| group);
+            Some(Pairing { groups: [number(&boundary.group)?, number(partner)?], law })
+        };
+        // Two groups that name each other are one pair.
+        let named_before = |k: usize| {
+            let is_that = |other: &Boundary| {
+                let back = other.partner().map(|(_, group)| group) == Some(&self.boundaries[k].group);
+                back && self.boundaries[k].partner().map(|(_, group)| group) == Some(&other.group)
+            };
+            self.boundaries[..k].iter().any(is_that)
+        };
+        (0..self.boundaries.len()).filter(|&k| !named_before(k)).filter_map(|k| of(&self.boundaries[k])).collect()
     }
 
     /// What lies behind the faces of each cell: the mesh's neighbours, and those across periodic boundaries.
@@ -108,9 +127,11 @@ impl Scene {
     /// As [`Scheme::new`].
     pub fn build_scheme(&self, mesh: &Mesh, operators: Operators, kernel: Kernel) -> Result<Scheme> {
         let condition = |group: &String| self.boundaries.iter().find(|b| b.group == *group).map(condition);
-        // `check_mesh` has refused groups without a condition; no face looks at that of a periodic group.
+        // `check_mesh` has refused groups without a condition; no face looks at that of a periodic group, and one that others name as
+        // their partner is free but for what acts between them.
         let free = || Arc::new(boundary::Free) as Arc<dyn boundary::Boundary>;
         let boundaries = mesh.edge_groups.iter().map(|group| condition(group).unwrap_or_else(free)).collect();
+        let pairings = self.pairings(mesh);
         let rate = self.curl.values.number("alpha") * self.scheme.degree as f64;
         let curl = self.curl.build().relax.map(|relax| Control { relax, rate });
         let mut sources: Vec<_> = self.sources.iter().map(|s| self.source(s)).collect();
@@ -119,7 +140,7 @@ impl Scene {
             sources.push(Arc::new(ExactForce(exact)));
         }
         let (laws, flux) = (self.laws(), (self.scheme.flux.build().make)());
-        let scheme = Scheme::new(operators, laws, self.integration(), flux, boundaries)?;
+        let scheme = Scheme::new(operators, laws, self.integration(), flux, boundaries)?.with_pairings(&pairings)?;
         let scheme = scheme.with_sources(sources).with_corrections(self.limiters()).with_kernel(kernel);
         let scheme = scheme.with_rescue(self.limiter.values.boolean("rescue").then(Rescue::default));
         // Constants have no curl.

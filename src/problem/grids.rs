@@ -46,7 +46,7 @@ impl Scene {
     pub fn regrid_mesh(&self, rule: usize, count: usize, present: &Present) -> Result<Mesh> {
         let grid = &self.regrids[rule].grid;
         let mesh = (grid.build().make)(&grid.values, &Numbered(self, rule), count, present)?;
-        self.check_mesh(&mesh)?;
+        let mesh = self.cut_mesh(mesh)?;
         self.check_exact_materials(&mesh)?;
         Ok(mesh)
     }

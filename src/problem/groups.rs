@@ -6,6 +6,21 @@ use crate::mesh::parts::EdgeCount;
 use crate::scene::{Boundary, Scene};
 
 impl Scene {
+    /// The mesh cut along the edges inside of the body that bear a condition, its groups checked.
+    ///
+    /// # Errors
+    /// As [`Scene::check_mesh`]; a cut that cannot open.
+    pub fn cut_mesh(&self, mesh: Mesh) -> Result<Mesh> {
+        let of_scene = |name: &String| {
+            let own = self.boundaries.iter().filter(|boundary| !boundary.is_joined());
+            own.flat_map(Boundary::groups).any(|group| group == name)
+        };
+        let groups: Vec<usize> = (0..mesh.edge_groups.len()).filter(|&k| of_scene(&mesh.edge_groups[k])).collect();
+        let mesh = mesh.split(&groups)?;
+        self.check_mesh(&mesh)?;
+        Ok(mesh)
+    }
+
     /// Checks the groups of a mesh: as [`Scene::check_groups`], where groups with edges inside of the body, or with none at
     /// all, need no condition and can have none.
     ///
@@ -22,27 +37,28 @@ impl Scene {
         self.check_conditions(mesh, &counts)
     }
 
-    /// A condition acts on boundary edges. On a group of others it would do nothing, and nobody would be told.
+    /// A condition acts on boundary edges, and the mesh is cut where they are inside ([`Scene::cut_mesh`]). Groups whose faces are
+    /// joined are at the edge of the body: inside they would do nothing, and nobody would be told.
     fn check_conditions(&self, mesh: &Mesh, counts: &[EdgeCount]) -> Result<()> {
         let named = |(i, boundary): (usize, &Boundary)| {
             let own = (format!("boundary.{i}.group"), boundary.group.clone());
             let partner = boundary.partner().map(|(key, group)| (format!("boundary.{i}.{key}"), group.to_owned()));
             [Some(own), partner]
         };
+        let joined: Vec<&str> = self.boundaries.iter().filter(|b| b.is_joined()).flat_map(Boundary::groups).collect();
         for (key, name) in self.boundaries.iter().enumerate().flat_map(named).flatten() {
             // `check_all` has refused groups that the mesh lacks.
             let Some(group) = mesh.edge_groups.iter().position(|group| *group == name) else { continue };
             let EdgeCount { inner, boundary } = counts[group];
-            if inner > 0 {
+            if inner > 0 && joined.contains(&name.as_str()) {
                 let what = format!(
                     "the group \"{name}\" has {inner} edge(s) inside of the body and {boundary} boundary edge(s): \
-                     conditions do not act on edges inside"
+                     a body does not go on periodically from edges inside"
                 );
-                let remedy = "put the boundary edges alone into a group; a group of edges inside needs no [[boundary]], and \
-                              where a gap is meant the two sides need nodes of their own (in Gmsh `Plugin(Crack)`)";
+                let remedy = "put the boundary edges alone into a group; a group of edges inside needs no [[boundary]]";
                 return Err(self.error(&key, what, remedy));
             }
-            if boundary == 0 {
+            if boundary + inner == 0 {
                 let what = format!("the group \"{name}\" of the mesh has no edge");
                 return Err(self.error(&key, what, "remove the condition, or give a mesh whose group has edges"));
             }

@@ -143,7 +143,7 @@ impl<'a> Setup<'a> {
     pub fn body(&mut self) -> Result<Body> {
         let mesh = match self.mesh.take() {
             Some(mesh) => {
-                self.scene.check_mesh(&mesh)?;
+                let mesh = self.scene.cut_mesh(mesh)?;
                 self.scene.check_exact_materials(&mesh)?;
                 mesh
             }

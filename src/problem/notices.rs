@@ -80,7 +80,7 @@ fn in_parts(mesh: &Mesh, parts: &[Part]) -> Option<String> {
         list.push(format!("and {} more", parts.len() - NAMED));
     }
     Some(format!(
-        "the mesh has {} parts that share no edge and do not see each other, there is no contact between them: {}; parts of \
+        "the mesh has {} parts that share no edge and do not see each other, there is no contact between them unless a [[boundary]] says so: {}; parts of \
          one body must share their nodes (in Gmsh `Coherence;`, or `Coherence Mesh;` after meshing)",
         parts.len(),
         list.join(", ")

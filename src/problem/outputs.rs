@@ -7,11 +7,12 @@ use crate::observe::{Contents, Field, Observer, Schedule};
 use crate::registry::outputs::{Recording, fields_of};
 use crate::registry::{Chosen, OUTPUTS, defaults};
 use crate::run::Folder;
-use crate::scene::{Output, Quantity, Scene, When};
+use crate::scene::{Boundary, Output, Quantity, Scene, When};
 use crate::state::UNKNOWNS;
 
 impl Scene {
-    /// Whether an output or a quantity asks for the displacement: as a field, for the angular momentum of a ledger, for a length.
+    /// Whether an output or a quantity asks for the displacement: as a field, for the angular momentum of a ledger, for a length; and
+    /// where faces meet others, which takes their current positions.
     pub fn wants_displacement(&self) -> bool {
         let laws = self.laws();
         let wants = |output: &Output| {
@@ -19,7 +20,8 @@ impl Scene {
             shown || (output.what.build().displacement)(&output.what.values)
         };
         let needs = |quantity: &Quantity| (quantity.what.build().displacement)(&quantity.what.values);
-        self.outputs.iter().any(wants) || self.quantities.iter().any(needs)
+        let meets = |boundary: &Boundary| boundary.condition.build().interaction.is_some();
+        self.outputs.iter().any(wants) || self.quantities.iter().any(needs) || self.boundaries.iter().any(meets)
     }
 
     /// The fields that an output shows.

@@ -181,7 +181,11 @@ impl Problem {
         let operators = operators(scene, &body)?;
         clock.lap("matrices");
         // Laws, conditions, sources and corrections may be the user's own: they go on as they are.
-        let after = scheme.on_grid(operators, conditions_on(&body.mesh, &old.mesh, scheme))?;
+        let after = scheme.on_grid(
+            operators,
+            conditions_on(&body.mesh, &old.mesh, scheme),
+            &self.scene.pairings(&body.mesh),
+        )?;
         regrid::curl_free(&after, state.components, &transfer.same, &mut transfer.u);
         let new = State::pack(&after.operators.blocks, n, state.components, &transfer.u);
         let mut new = State { time: state.time, step: state.step, ..new }.holding(state, &transfer.same, n);
@@ -197,7 +201,7 @@ impl Problem {
     /// # Errors
     /// A mesh that is not of the same body, whose groups are not those of the scene, or whose points cannot carry the degree.
     pub fn regrid(&mut self, mesh: Mesh, policy: Policy) -> Result<()> {
-        self.scene.check_mesh(&mesh)?;
+        let mesh = self.scene.cut_mesh(mesh)?;
         let moved = self.moved(mesh, policy, |scene, body| body.operators(scene), &mut Clock::new())?;
         if let Some(Moved { body, scheme, state, .. }) = moved {
             (self.body, self.scheme, self.state) = (body, scheme, state);

@@ -156,10 +156,22 @@ pub struct Boundary {
 }
 
 impl Boundary {
-    /// The group that this one is joined to, after the key that names it.
+    /// Another group that this one is joined to or interacts with, after the key that names it.
     pub fn partner(&self) -> Option<(&'static str, &str)> {
         let key = self.condition.build().partner?;
-        Some((key, self.condition.values.text(key)))
+        let partner = self.condition.values.maybe_text(key)?;
+        (self.is_joined() || partner != self.group).then_some((key, partner))
+    }
+
+    /// Whether the faces of the group are joined to those of its partner, as inner faces.
+    pub fn is_joined(&self) -> bool {
+        let condition = self.condition.build();
+        condition.partner.is_some() && condition.interaction.is_none()
+    }
+
+    /// The group, and that of its partner.
+    pub fn groups(&self) -> impl Iterator<Item = &str> {
+        [self.group.as_str()].into_iter().chain(self.partner().map(|(_, group)| group))
     }
 }
 

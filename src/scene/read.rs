@@ -231,6 +231,7 @@ fn boundaries(tables: Vec<Reader>, degree: usize) -> Result<Vec<Boundary>> {
             return Err(table.wrong("group", what, "a group of edges has one condition: remove one"));
         }
         if let Some((key, partner)) = boundary.partner()
+            && boundary.is_joined()
             && partner == boundary.group
         {
             let what = format!("the group \"{partner}\" is its own `{key}`");

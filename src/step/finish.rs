@@ -5,6 +5,7 @@ use super::balance::BlockBalance;
 use super::block::Block;
 use super::block_energy::BlockEnergy;
 use super::lift::Lift;
+use super::meetings::Meetings;
 use super::outside::ExternalWork;
 use super::phase::Clock;
 use super::rotation::Rotation;
@@ -43,6 +44,8 @@ pub(super) struct Finish<'a> {
     pub balance: Option<&'a mut BlockBalance>,
     /// The memory of the conditions at it.
     pub memory: &'a mut [f64],
+    /// Where faces meet in the step; none where no condition pairs any.
+    pub meetings: Option<&'a Meetings>,
     /// The thread's arrays.
     pub scratch: &'a mut Scratch,
 }
@@ -82,7 +85,7 @@ impl Finish<'_> {
         let (block, kernel, line) = (self.block, self.block.scheme.kernel, &self.block.scheme.operators.line);
         let (external, balance) = (self.external.as_deref_mut(), self.balance.as_deref_mut());
         let meter = flux::Meter { external, balance, memory: &mut *self.memory };
-        block.lifted_fluxes(&self.traces, &mut self.scratch.nodes, meter);
+        block.lifted_fluxes(&self.traces, self.meetings, &mut self.scratch.nodes, meter);
         let (metric, nodes) = (block.metric(), &self.scratch.nodes);
         let held = (block.scheme.flux.looks() == Looks::Displacement).then_some(&nodes.held[..]);
         let lift = &nodes.lift[..];

@@ -4,6 +4,8 @@ use super::across::{Aligned, Apart, Beyond, Joined, LaneByLane, Other, Traces};
 use super::balance::{BlockBalance, FacePower, boundary_loss, boundary_power};
 use super::block::Block;
 use super::block_work::FluxWork;
+use super::meeting_flux::Met;
+use super::meetings::Meetings;
 use super::outside::ExternalWork;
 use super::volume::{Arrays, width};
 use crate::boundary::{FacePoint, Moment};
@@ -142,6 +144,8 @@ struct Sides<'a> {
     own: &'a [F8],
     /// With its own normal; lanes at a boundary see themselves or what they must not use.
     other: &'a Beyond<'a>,
+    /// What else faces of the block meet; none where no condition pairs faces.
+    met: Option<Met<'a>>,
 }
 
 /// Where the energy that passes the faces of a block goes.
@@ -212,7 +216,7 @@ impl FaceBalance<'_, '_> {
 
 impl Block<'_> {
     /// Lifted numbers of all faces into `nodes.lift`; the energy that they pass into `meter`.
-    pub fn lifted_fluxes(&self, traces: &Traces, nodes: &mut Arrays, mut meter: Meter) {
+    pub fn lifted_fluxes(&self, traces: &Traces, meetings: Option<&Meetings>, nodes: &mut Arrays, mut meter: Meter) {
         let scheme = self.scheme;
         let (blocks, m) = (&scheme.operators.blocks, scheme.operators.line.m);
         let (flux, metered) = (scheme.flux.block(), meter.balance.is_some());
@@ -235,7 +239,8 @@ impl Block<'_> {
         let (lift, held) = (&mut nodes.lift[..], &mut nodes.held[..]);
         flux.faces(scheme.kernel, Faces { metered, own, other: &other, metric, points: m, span, medium, lift, held });
         for face in 0..FACES {
-            let sides = Sides { face, own: &own[face * length..][..length], other: &other[face] };
+            let met = meetings.map(|meetings| Met { meetings, traces });
+            let sides = Sides { face, own: &own[face * length..][..length], other: &other[face], met };
             if plan[face].has_boundary_or_interface {
                 let held = &mut nodes.held[2 * m * face..2 * m * (face + 1)];
                 let lift = &mut nodes.lift[UNKNOWNS * m * face..UNKNOWNS * m * (face + 1)];
@@ -256,7 +261,9 @@ impl Block<'_> {
         for (point, (own, lift)) in sides.own.chunks_exact(width).zip(lift.as_chunks_mut::<UNKNOWNS>().0).enumerate() {
             for lane in 0..LANES {
                 let memory = &mut *meter.memory;
-                let Some(flux) = self.flux_of_lane(face, point, lane, own, sides.other, memory) else { continue };
+                let met = sides.met.and_then(|met| self.flux_of_meeting(met, [face, point, lane], own, memory));
+                let flux = met.or_else(|| self.flux_of_lane(face, point, lane, own, sides.other, memory));
+                let Some(flux) = flux else { continue };
                 let between = self.held_between(face, point, lane, own, sides.other);
                 (0..2).for_each(|k| held[2 * point + k].0[lane] = between[k]);
                 let metric = self.metric().lane(lane);
@@ -328,7 +335,7 @@ impl Block<'_> {
         }
     }
 
-    fn face_point(&self, face: usize, point: usize, lane: usize) -> FacePoint {
+    pub(super) fn face_point(&self, face: usize, point: usize, lane: usize) -> FacePoint {
         let geometry = &self.scheme.operators.geometry;
         let along = self.scheme.operators.line.basis.nodes[point];
         let end = (face % 2) as f64;

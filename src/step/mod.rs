@@ -31,6 +31,8 @@ mod law;
 
 mod lift;
 mod loss;
+mod meeting_flux;
+mod meetings;
 mod motion;
 mod outside;
 pub mod phase;
@@ -61,6 +63,7 @@ pub use flux_of_blocks::Flux;
 pub use history::Histories;
 pub use law::Law;
 pub use loss::{Loss, LossKind, Site};
+pub use meetings::Pairing;
 pub use motion::Motion;
 pub use phase::{Phase, Phases};
 pub use rescue::Rescue;
@@ -91,6 +94,8 @@ pub struct Work {
     balance: Option<Vec<balance::BlockBalance>>,
     /// The memory of corrections and rescue; none where there are none.
     corrections: Option<Box<correction::Memory>>,
+    /// Where faces meet in the step; none where no condition pairs any.
+    meetings: Option<Box<meetings::Meetings>>,
     /// One a thread.
     scratch: Vec<Mutex<Scratch>>,
     /// The clock of the phases.
@@ -125,6 +130,7 @@ impl Work {
             outside: outside::Outside::new(scheme),
             balance: None,
             corrections: correction::Memory::new(scheme, state),
+            meetings: meetings::Meetings::new(scheme),
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
             rate: phase::Rate::start(),
         }
@@ -147,6 +153,7 @@ impl Work {
             + self.outside.bytes()
             + self.balance.as_ref().map_or(0, |blocks| size_of_val(&blocks[..]))
             + self.corrections.as_ref().map_or(0, |memory| memory.bytes())
+            + self.meetings.as_ref().map_or(0, |meetings| meetings.bytes())
     }
 }
 
@@ -182,6 +189,9 @@ impl Scheme {
     /// The same; the time of the result is `time`: t + dt, but for a rounding.
     fn step_to(&self, state: &State, survey: &Survey, dt: f64, time: f64, work: &mut Work) {
         let (begin, finish) = (|block: Begin| block.run(), |block: Finish| block.run());
+        if let Some(meetings) = &mut work.meetings {
+            meetings.find(self, state);
+        }
         match &self.method {
             Method::Ader { time: basis, .. } => {
                 let node = |(tau, weight): (&f64, &f64)| TimeNode { time: state.time + tau * dt, weight: *weight };

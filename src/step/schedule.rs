@@ -4,6 +4,7 @@ use super::balance::BlockBalance;
 use super::begin::Begin;
 use super::block::Block;
 use super::finish::{Finish, New};
+use super::meetings::Meetings;
 use super::outside::{self, ExternalWork};
 use super::tile_memory::{Tile, Tiles};
 use super::tiles::{Event, Slot};
@@ -77,7 +78,7 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
 
     fn finish(&mut self, event: &Event) {
         let Self { step, tile, shown, out, scratch } = self;
-        let Step { scheme, stages, state, survey, slots, outside, seen, far, .. } = *step;
+        let Step { scheme, stages, state, survey, slots, outside, seen, far, meetings, .. } = *step;
         let (number, stage) = (event.block as usize, &stages[usize::from(event.stage)]);
         let blocks = scheme.operators.blocks.len();
         let stride = state.components * scheme.operators.nodes();
@@ -117,6 +118,7 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
             external,
             balance,
             memory,
+            meetings,
             scratch,
         });
     }
@@ -198,6 +200,7 @@ struct Step<'a, B, F> {
     /// See [`outside::Outside::first`].
     outside: &'a [u32],
     far: bool,
+    meetings: Option<&'a Meetings>,
     scratch: &'a [Mutex<Scratch>],
     phase: usize,
     /// The traces that tiles have shown in the phases before.
@@ -239,7 +242,7 @@ impl Scheme {
         begin: impl Fn(Begin) + Copy + Send + Sync,
         finish: impl Fn(Finish) + Copy + Send + Sync,
     ) {
-        let Work { tiles, next, speed, outside, balance, scratch, corrections, .. } = work;
+        let Work { tiles, next, speed, outside, balance, scratch, corrections, meetings, .. } = work;
         let Tiles { tiles, phases, shown, slots, far, .. } = tiles;
         let (u, internal, balance) = (&mut next.u[..], &mut next.internal[..], balance.as_deref_mut());
         let (worst, mut starts) = match corrections.as_deref_mut() {
@@ -258,9 +261,23 @@ impl Scheme {
             };
             let (seen, shown) = shown.split_at_mut(phase * count);
             let outside = &outside.first[..];
-            let (scheme, far) = (self, *far);
-            let step =
-                Step { begin, finish, scheme, stages, state, start, survey, slots, outside, far, scratch, phase, seen };
+            let (scheme, far, meetings) = (self, *far, meetings.as_deref());
+            let step = Step {
+                begin,
+                finish,
+                scheme,
+                stages,
+                state,
+                start,
+                survey,
+                slots,
+                outside,
+                far,
+                meetings,
+                scratch,
+                phase,
+                seen,
+            };
             step.run(tiles, &mut shown[..count], out.again());
         }
     }

@@ -1,6 +1,7 @@
 //! What stays the same from step to step.
 
 use super::boundary_memory::BoundaryMemory;
+use super::meetings::{Contacts, Pairing};
 use super::{Control, Correction, Flux, Histories, Law, Rescue, Sweeps, Tableau};
 use crate::basis::TimeBasis;
 use crate::boundary::Boundary;
@@ -49,6 +50,8 @@ pub struct Scheme {
     pub flux: Flux,
     /// Condition of each boundary group of the mesh.
     pub boundaries: Vec<Arc<dyn Boundary>>,
+    /// The faces that interact across gaps; none where no condition pairs any.
+    pub(super) contacts: Option<Contacts>,
     /// Sources of momentum.
     pub sources: Vec<Arc<dyn Source>>,
     /// The control of the curl of F; none where it is off.
@@ -114,6 +117,7 @@ impl Scheme {
             method,
             flux,
             boundaries,
+            contacts: None,
             sources,
             curl,
             corrections,
@@ -128,6 +132,23 @@ impl Scheme {
         Self { sources, ..self }
     }
 
+    /// With what acts between pairs of boundary groups. The memory of a law is that of the conditions of its groups
+    /// ([`crate::contact::Paired`]).
+    ///
+    /// # Errors
+    /// An edge of a cut ([`crate::contact::Pairs::Initial`]) without its other side.
+    pub fn with_pairings(self, pairings: &[Pairing]) -> Result<Self> {
+        let contacts = Contacts::new(&self.operators, pairings);
+        if let Some([a, b]) = contacts.as_ref().and_then(Contacts::without_partner) {
+            let what = format!("the edge from {a:?} to {b:?} has no other side");
+            return Err(Error::input(
+                what,
+                "a cohesive group lies inside of the body, or has both sides of a gap of width 0",
+            ));
+        }
+        Ok(Self { contacts, ..self })
+    }
+
     /// With corrections of the new state, in this order.
     #[must_use]
     pub fn with_corrections(self, corrections: Vec<Arc<dyn Correction>>) -> Self {
@@ -140,16 +161,22 @@ impl Scheme {
         Self { rescue, ..self }
     }
 
-    /// The same on another grid of the same body, with the conditions of its boundary groups.
+    /// The same on another grid of the same body, with the conditions of its boundary groups and what acts between them.
     ///
     /// # Errors
     /// As [`Scheme::new`].
-    pub fn on_grid(&self, operators: Operators, boundaries: Vec<Arc<dyn Boundary>>) -> Result<Self> {
+    pub fn on_grid(
+        &self,
+        operators: Operators,
+        boundaries: Vec<Arc<dyn Boundary>>,
+        pairings: &[Pairing],
+    ) -> Result<Self> {
         let (laws, method, flux) = (self.laws.clone(), self.method.clone(), self.flux.clone());
         let new = Self::new(operators, laws, method, flux, boundaries)?;
         let (sources, corrections) = (self.sources.clone(), self.corrections.clone());
         let new =
             new.with_sources(sources).with_corrections(corrections).with_rescue(self.rescue).with_kernel(self.kernel);
+        let new = new.with_pairings(pairings)?;
         match self.curl {
             Some(control) => new.with_curl(control),
             None => Ok(new),

@@ -38,7 +38,11 @@ impl Tiles {
     /// For states with `stride` numbers a block, on the current number of threads.
     pub fn new(scheme: &Scheme, stride: usize) -> Self {
         let (stages, blocks) = (scheme.stages(), &scheme.operators.blocks);
-        let plan = Plan::new(&tiles::graph(blocks), stages, rayon::current_num_threads().max(1));
+        let mut graph = tiles::graph(blocks);
+        if let Some(contacts) = &scheme.contacts {
+            contacts.link(&mut graph);
+        }
+        let plan = Plan::new(&graph, stages, rayon::current_num_threads().max(1));
         // Corrections of stages need all blocks of a stage at once.
         let plan = if scheme.corrects_stages() { plan.by_stages(stages) } else { plan };
         let phases = plan.phases();

@@ -1,0 +1,85 @@
+//! The flux at face points whose face meets another one.
+
+use super::across::Traces;
+use super::block::Block;
+use super::meetings::{Meetings, Segment};
+use crate::contact::{Meeting, Pairs, Side};
+use crate::lane::F8;
+use crate::mesh::FACES;
+use crate::riemann::{Trace, star};
+use crate::state::UNKNOWNS;
+
+/// Where the faces of a block meet others in this step, and the traces there.
+#[derive(Clone, Copy)]
+pub(super) struct Met<'a> {
+    /// The meetings of the step.
+    pub meetings: &'a Meetings,
+    /// All traces under way.
+    pub traces: &'a Traces<'a>,
+}
+
+impl Block<'_> {
+    /// The flux at a point of a face that meets others: with the traction t that they leave there, t* = t, v* = v + Z^-1 (t - T). None
+    /// where it meets nothing.
+    pub(super) fn flux_of_meeting(
+        &self,
+        met: Met,
+        [face, point, lane]: [usize; 3],
+        own: &[F8],
+        memory: &mut [f64],
+    ) -> Option<[f64; UNKNOWNS]> {
+        let contacts = self.scheme.contacts.as_ref()?;
+        let number = contacts.number(FACES * self.number + face, lane)?;
+        let met_by = &met.meetings.of_face[number];
+        if met_by.is_empty() {
+            return None;
+        }
+        let line = &self.scheme.operators.line;
+        let memory = self.scheme.boundary_memory.of_point(memory, [self.number, face, lane, point]);
+        let mut force = [0.0; 2];
+        for &(segment, side) in met_by {
+            let segment = &met.meetings.segments[segment];
+            let law = contacts.law(segment.pairing);
+            // The points of a cut are those of the faces: each has its own memory, and none acts on another.
+            let is_cut = law.pairs() == Pairs::Initial;
+            for at in &segment.points[..line.m] {
+                let share = at.values[side][point];
+                if share == 0.0 || (is_cut && share < 0.5) {
+                    continue;
+                }
+                let sides = [0, 1].map(|k| self.side(segment, &at.values[k], k, met.traces, own.len()));
+                let (gap, step, dt) = (at.gap, self.stage.dt, self.factor());
+                let meeting = Meeting { sides, normal: segment.normal, gap, step, dt };
+                let t = law.traction(&meeting, memory);
+                let sign = if side == 0 { 1.0 } else { -1.0 };
+                (0..2).for_each(|i| force[i] += sign * at.weight * share * t[i]);
+            }
+        }
+        let at = self.face_point(face, point, lane);
+        let length = self.metric().lane(lane).length(face);
+        let t = force.map(|force| force / (line.basis.weights[point] * length));
+        let x = |k: usize| own[k].0[lane];
+        let f = [x(0), x(1), x(2), x(3)];
+        let inside = Trace { f, v: [x(4), x(5)], t: [x(6), x(7)], c: self.law().speeds(f, at.normal) };
+        let dv = at.characteristic(&inside).solve([t[0] - inside.t[0], t[1] - inside.t[1]]);
+        Some(star([inside.v[0] + dv[0], inside.v[1] + dv[1]], t, at.normal))
+    }
+
+    /// What a side of a segment shows at a point of it, where the values of its functions are `values`.
+    fn side(&self, segment: &Segment, values: &[f64], side: usize, traces: &Traces, width: usize) -> Side {
+        let (scheme, m) = (self.scheme, self.scheme.operators.line.m);
+        let Some(contacts) = &scheme.contacts else { return Side { v: [0.0; 2], t: [0.0; 2], z: [1.0; 2] } };
+        let face = &contacts.faces[segment.faces[side]];
+        let (block, numbers) = (face.face / FACES, traces.faces(face.face, 1, m * width));
+        let of = |k: usize| -> f64 { (0..m).map(|i| values[i] * numbers[i * width + k].0[face.lane]).sum() };
+        let law = &scheme.laws[scheme.operators.blocks.material[block]];
+        let normal = scheme.operators.geometry.blocks[block].lane(face.lane).normal(face.face % FACES);
+        let c = law.speeds([of(0), of(1), of(2), of(3)], normal);
+        let per_length = 1.0 / segment.stretch[side];
+        Side {
+            v: [of(4), of(5)],
+            t: [per_length * of(6), per_length * of(7)],
+            z: c.map(|c| law.density() * c * per_length),
+        }
+    }
+}
