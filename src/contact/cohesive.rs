@@ -25,7 +25,7 @@ pub struct Cohesive {
 }
 
 /// Opening along the axes x, y, seen from this side, and k; m.
-const VIRGIN: [f64; 3] = [0.0; 3];
+pub(super) const VIRGIN: [f64; 3] = [0.0; 3];
 
 impl Cohesive {
     /// d for the largest opening so far.

@@ -63,6 +63,9 @@ pub enum Pairs {
     Initial,
 }
 
+#[cfg(test)]
+mod tests;
+
 /// The condition of a group whose faces interact with others: free, with the memory of what acts.
 pub struct Paired(pub Arc<dyn Interaction>);
 

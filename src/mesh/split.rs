@@ -18,11 +18,13 @@ impl Mesh {
         }
         let beyond = neighbours(&self);
         let around = self.cells_around(cut.keys().flatten().copied().collect());
+        // By the numbers before the cut.
+        let faces = |cell: usize| [0, 1, 2, 3].map(|face| (self.face_nodes(cell, face), self.sorted_nodes(cell, face)));
+        let faces: Vec<[([usize; 2], [usize; 2]); 4]> = (0..self.cells.len()).map(faces).collect();
         for (node, cells) in &around {
-            let is_open = |cell: usize, face: usize| cut.contains_key(&self.sorted_nodes(cell, face));
             let parts = parts_at(cells, |cell, face| {
-                let touches = self.face_nodes(cell, face).contains(node) && !is_open(cell, face);
-                beyond[cell][face].filter(|_| touches)
+                let (ends, sorted) = &faces[cell][face];
+                beyond[cell][face].filter(|_| ends.contains(node) && !cut.contains_key(sorted))
             });
             for part in &parts[1..] {
                 let new = self.nodes.len();

@@ -2,7 +2,7 @@
 
 use super::across::Traces;
 use super::block::Block;
-use super::meetings::{Meetings, Segment};
+use super::meetings::{Meetings, Point, Segment};
 use crate::contact::{Meeting, Pairs, Side};
 use crate::lane::F8;
 use crate::mesh::FACES;
@@ -47,7 +47,7 @@ impl Block<'_> {
                 if share == 0.0 || (is_cut && share < 0.5) {
                     continue;
                 }
-                let sides = [0, 1].map(|k| self.side(segment, &at.values[k], k, met.traces, own.len()));
+                let sides = [0, 1].map(|k| self.side(segment, at, k, met.traces, own.len()));
                 let (gap, step, dt) = (at.gap, self.stage.dt, self.factor());
                 let meeting = Meeting { sides, normal: segment.normal, gap, step, dt };
                 let t = law.traction(&meeting, memory);
@@ -65,17 +65,17 @@ impl Block<'_> {
         Some(star([inside.v[0] + dv[0], inside.v[1] + dv[1]], t, at.normal))
     }
 
-    /// What a side of a segment shows at a point of it, where the values of its functions are `values`.
-    fn side(&self, segment: &Segment, values: &[f64], side: usize, traces: &Traces, width: usize) -> Side {
+    /// What a side of a segment shows at a point of it.
+    fn side(&self, segment: &Segment, at: &Point, side: usize, traces: &Traces, width: usize) -> Side {
         let (scheme, m) = (self.scheme, self.scheme.operators.line.m);
         let Some(contacts) = &scheme.contacts else { return Side { v: [0.0; 2], t: [0.0; 2], z: [1.0; 2] } };
         let face = &contacts.faces[segment.faces[side]];
         let (block, numbers) = (face.face / FACES, traces.faces(face.face, 1, m * width));
-        let of = |k: usize| -> f64 { (0..m).map(|i| values[i] * numbers[i * width + k].0[face.lane]).sum() };
+        let of = |k: usize| -> f64 { (0..m).map(|i| at.values[side][i] * numbers[i * width + k].0[face.lane]).sum() };
         let law = &scheme.laws[scheme.operators.blocks.material[block]];
         let normal = scheme.operators.geometry.blocks[block].lane(face.lane).normal(face.face % FACES);
         let c = law.speeds([of(0), of(1), of(2), of(3)], normal);
-        let per_length = 1.0 / segment.stretch[side];
+        let per_length = 1.0 / at.stretch[side];
         Side {
             v: [of(4), of(5)],
             t: [per_length * of(6), per_length * of(7)],

@@ -12,6 +12,7 @@
 //! matrix W_i of the whole face, the face points take no more energy than the points of the segment lose.
 
 use super::Scheme;
+use crate::basis::Lagrange;
 use crate::contact::{Interaction, Pairs};
 use crate::lane::LANES;
 use crate::mesh::{FACES, map};
@@ -43,6 +44,12 @@ const OVERLAP: f64 = 0.25;
 
 /// Pairs up to this part of a cell apart are looked at in each step. Between two searches faces may move by half of it.
 const REACH: f64 = 0.5;
+
+/// Steps of Newton's method to a point of a face; it starts at an error of the order of h^2, squared each time.
+const NEWTON: usize = 3;
+
+/// Points further from those of the chord than this part of a face are none.
+const FOLDED: f64 = 0.3;
 
 /// Shared parts shorter than this part of a face are none.
 const SHORTEST: f64 = 1e-9;
@@ -191,6 +198,8 @@ pub(super) struct Point {
     pub weight: f64,
     /// (x_2 - x_1).n, m.
     pub gap: f64,
+    /// Current over initial length of both sides.
+    pub stretch: [f64; 2],
     /// l_i(s_g) on both sides.
     pub values: [[f64; MOST]; 2],
 }
@@ -204,8 +213,6 @@ pub(super) struct Segment {
     pub faces: [usize; 2],
     /// The current unit normal, out of the first.
     pub normal: [f64; 2],
-    /// Current over initial length of both.
-    pub stretch: [f64; 2],
     /// Its points.
     pub points: [Point; MOST],
 }
@@ -374,10 +381,30 @@ impl Chord {
         let s = (x - from) / (to - from);
         if self.reversed { 1.0 - s } else { s }
     }
+
+    /// l_i(s) and |dx/ds| along `axis` at the point of the face whose coordinate along `axis` is `x`: then both sides of a segment
+    /// stand opposite each other along the normal, and a pressure between them has no moment. (With s of the chord two discs that
+    /// meet obliquely gain 1.9 % of their angular momentum at S2, with this they lose .16 %.)
+    fn reach(&self, x: f64, axis: [f64; 2], points: &[[f64; 2]], basis: &Lagrange) -> (Vec<f64>, f64) {
+        let first = self.parameter(x, axis);
+        let chord = (dot(self.to, axis) - dot(self.from, axis)).abs();
+        let mut s = first;
+        let mut slope = chord;
+        for _ in 0..NEWTON {
+            let at = dot(along(&basis.values(s), points), axis);
+            slope = dot(along(&basis.derivatives(s), points), axis);
+            s -= (at - x) / slope;
+        }
+        // A face that folds over has no such point.
+        if (s - first).abs() > FOLDED || slope.abs() < FOLDED * chord {
+            return (basis.values(first), chord);
+        }
+        (basis.values(s), slope.abs())
+    }
 }
 
 /// The part that two faces share, with its points; none where they do not lie opposite each other.
-fn shared(chords: &[Chord; 2], points: [&[[f64; 2]; MOST]; 2], basis: &crate::basis::Lagrange) -> Option<Segment> {
+fn shared(chords: &[Chord; 2], points: [&[[f64; 2]; MOST]; 2], basis: &Lagrange) -> Option<Segment> {
     let [a, b] = chords;
     if dot(a.direction, b.direction) > OPPOSITE {
         return None;
@@ -392,15 +419,15 @@ fn shared(chords: &[Chord; 2], points: [&[[f64; 2]; MOST]; 2], basis: &crate::ba
     if high - low <= SHORTEST * a.length.min(b.length) {
         return None;
     }
-    let stretch = [(a1 - a0) / a.length, (b1 - b0) / b.length];
-    let mut out = Segment { pairing: 0, faces: [0; 2], normal, stretch, points: [Point::default(); MOST] };
+    let mut out = Segment { pairing: 0, faces: [0; 2], normal, points: [Point::default(); MOST] };
     for (out, (node, weight)) in out.points.iter_mut().zip(basis.nodes.iter().zip(&basis.weights)) {
         let x = low + (high - low) * node;
         let mut at = [[0.0; 2]; 2];
         for (side, chord) in chords.iter().enumerate() {
-            let values = basis.values(chord.parameter(x, axis));
+            let (values, slope) = chord.reach(x, axis, points[side], basis);
             at[side] = along(&values, points[side]);
             out.values[side][..values.len()].copy_from_slice(&values);
+            out.stretch[side] = slope / chord.length;
         }
         out.weight = (high - low) * weight;
         out.gap = dot([at[1][0] - at[0][0], at[1][1] - at[0][1]], normal);
