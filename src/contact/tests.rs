@@ -78,16 +78,19 @@ fn heavy(rate: f64, dt: f64) -> Meeting {
 
 #[test]
 fn a_cohesive_edge_takes_its_energy_to_break_and_its_strength_is_its_largest_traction() {
-    let (mut memory, mut work, mut largest, dt) = (VIRGIN, 0.0, 0.0_f64, 1e-3);
-    for _ in 0..4000 {
-        let t = EDGE.traction(&heavy(1.0, dt), &mut memory)[0];
-        work += t * dt;
-        largest = largest.max(t);
+    // Whatever the step: .5 m is ten times the opening at the strength.
+    for dt in [1e-3, 0.5] {
+        let (mut memory, mut work, mut largest) = (VIRGIN, 0.0, 0.0_f64);
+        for _ in 0..(4.0 / dt) as usize {
+            let t = EDGE.traction(&heavy(1.0, dt), &mut memory)[0];
+            work += t * dt;
+            largest = largest.max(t);
+        }
+        // Sides of finite weight, 4e-9 m/s a second.
+        assert!((work - EDGE.energy).abs() < 1e-7 * EDGE.energy, "{work}");
+        assert!(largest < EDGE.strength && (dt > 0.1 || largest > 0.98 * EDGE.strength), "{largest}");
+        assert_eq!(EDGE.traction(&heavy(1.0, dt), &mut memory), [0.0; 2]);
     }
-    // The damage is that of the step before: dt over .05 m, the opening at the strength, is 2 %; the area is off by less.
-    assert!((work - EDGE.energy).abs() < 2e-3 * EDGE.energy, "{work}");
-    assert!((largest - EDGE.strength).abs() < 0.02 * EDGE.strength, "{largest}");
-    assert_eq!(EDGE.traction(&heavy(1.0, dt), &mut memory), [0.0; 2]);
 }
 
 #[test]
@@ -101,9 +104,8 @@ fn an_edge_that_is_let_go_before_damage_gives_all_back_and_a_damaged_one_returns
         }
         // The sides give way by t dt/z a step: 4e-9 m/s for 2 s.
         assert!(memory[0].abs() < 1e-7);
-        // Of the triangle under the curve up to an opening l what is left is G (l - l_0)/(l_f - l_0): 3 .95/2.95 at 1 m; 1 % for the
-        // damage of the step before.
-        assert!((work - kept * 3.0 * 0.95 / 2.95).abs() < 0.01, "{work}");
+        // Of the triangle under the curve up to an opening l what is left is G (l - l_0)/(l_f - l_0): 3 .95/2.95 at 1 m.
+        assert!((work - kept * 3.0 * 0.95 / 2.95).abs() < 1e-6, "{work}");
     }
 }
 

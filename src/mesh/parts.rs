@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::Mesh;
+use super::{BoundaryEdge, Mesh};
 
 /// The edges of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -58,6 +58,22 @@ impl Mesh {
         }
         counts
     }
+
+    /// The edges of each group of [`Mesh::edge_groups`] that both sides of a gap of width 0 bear (a cut, [`Mesh::split`]) as `inner`, once
+    /// each, and the others as `boundary`.
+    pub fn cut_counts(&self) -> Vec<EdgeCount> {
+        let ends = |edge: &BoundaryEdge| {
+            let [a, b] = self.face_nodes(edge.cell, edge.face).map(|node| self.nodes[node].map(f64::to_bits));
+            [a.min(b), a.max(b)]
+        };
+        let mut sides: HashMap<(usize, [[u64; 2]; 2]), usize> = HashMap::with_capacity(self.edges.len());
+        self.edges.iter().for_each(|edge| *sides.entry((edge.group, ends(edge))).or_default() += 1);
+        let mut counts = vec![EdgeCount::default(); self.edge_groups.len()];
+        for ((group, _), sides) in sides {
+            if sides > 1 { counts[group].inner += 1 } else { counts[group].boundary += 1 }
+        }
+        counts
+    }
 }
 
 /// The parts of `cells` cells, in the order of their first cells; `neighbours` are the cells behind the faces of a cell.
@@ -88,7 +104,7 @@ pub fn parts<I: IntoIterator<Item = usize>>(cells: usize, neighbours: impl Fn(us
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{BoundaryEdge, Link, links, rectangle};
+    use crate::mesh::{Link, links, rectangle};
 
     /// 4 x 1 cells; the edges between the first two and between the last two are of the group `inside`.
     fn with_inner_edges() -> Mesh {

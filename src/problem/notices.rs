@@ -8,6 +8,7 @@ use crate::operators::{Blocks, Neighbour};
 use crate::scene::{Scene, When};
 use crate::state::State;
 use crate::step::{Scheme, Survey, cfl};
+use std::collections::HashMap;
 
 /// Parts that a list names before it only counts.
 const NAMED: usize = 4;
@@ -29,10 +30,12 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     let Problem { scene, body, scheme, state, .. } = problem;
     let Cost { survey, steps, dt, .. } = cost;
     let (mesh, blocks) = (&body.mesh, &scheme.operators.blocks);
-    let mut all: Vec<String> =
-        in_parts(mesh, &parts(mesh.cells.len(), |cell| behind(blocks, cell))).into_iter().collect();
-    // Groups with a condition and edges inside have been refused.
+    let meet = meeting(scheme);
+    let near = |cell: usize| behind(blocks, cell).into_iter().chain(meet.get(&cell).into_iter().flatten().copied());
+    let mut all: Vec<String> = in_parts(mesh, &parts(mesh.cells.len(), near)).into_iter().collect();
+    // Along groups with a condition the mesh has been cut.
     all.extend(partly_inside(mesh, &mesh.edge_counts(), "these have no [[boundary]] and are free"));
+    all.extend(cuts(scene, mesh));
     all.extend(large(mesh));
     all.extend(fast_start(mesh, scheme, state, survey));
     all.extend(fast_boundary(scene, mesh, scheme));
@@ -58,6 +61,34 @@ pub fn of_growth(problem: &Problem, cost: &Cost) -> Option<String> {
         "ADER of degree {degree} grows weakly at any dt: {growth:.0e} a step, a factor of {:.3} over this run",
         (growth * cost.steps).exp()
     ))
+}
+
+/// Cells that may act on each other across a gap, by cell.
+fn meeting(scheme: &Scheme) -> HashMap<usize, Vec<usize>> {
+    let mut all: HashMap<usize, Vec<usize>> = HashMap::new();
+    for cells in scheme.cells_that_meet() {
+        for pair in cells.windows(2) {
+            all.entry(pair[0]).or_default().push(pair[1]);
+            all.entry(pair[1]).or_default().push(pair[0]);
+        }
+    }
+    all
+}
+
+/// A word on each group with a condition along which the body is cut.
+fn cuts(scene: &Scene, mesh: &Mesh) -> Vec<String> {
+    let has_condition = |group: &str| scene.boundaries.iter().any(|boundary| boundary.groups().any(|own| own == group));
+    let text = |(group, EdgeCount { inner, boundary }): (usize, EdgeCount)| {
+        let name = &mesh.edge_groups[group];
+        let more =
+            if boundary > 0 { format!(", and {boundary} edge(s) at one side of the body only") } else { String::new() };
+        (inner > 0 && has_condition(name)).then(|| {
+            format!(
+                "the condition of `{name}` cuts the body along {inner} edge(s), of which both sides are boundary{more}"
+            )
+        })
+    };
+    mesh.cut_counts().into_iter().enumerate().filter_map(text).collect()
 }
 
 /// The cells behind the faces of a cell.

@@ -176,6 +176,18 @@ impl Contacts {
     }
 }
 
+impl Scheme {
+    /// By pairing of boundary groups, the cells whose faces may act on each other.
+    pub fn cells_that_meet(&self) -> Vec<Vec<usize>> {
+        let Some(contacts) = &self.contacts else { return vec![] };
+        let cell = |face: &usize| {
+            let face = &contacts.faces[*face];
+            self.operators.blocks.cells[face.face / FACES][face.lane]
+        };
+        contacts.pairings.iter().map(|(_, faces)| faces.iter().flatten().map(cell).collect()).collect()
+    }
+}
+
 impl Face {
     fn new(operators: &Operators, [block, face, lane]: [usize; 3]) -> Self {
         let corners = operators.geometry.corners_of(block, lane);
