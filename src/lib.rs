@@ -96,6 +96,7 @@ mod observe;
 mod run;
 mod exact;
 mod quantity;
+mod track;
 mod expression;
 pub mod registry;
 mod scene;
@@ -137,6 +138,7 @@ pub use exact::{Errors, Exact, Norms, errors};
 
 // Quantities of interest.
 pub use quantity::{Quantity, Seen};
+pub use track::{Column, Track, Tracked};
 
 /// The command line, `dgmpm ..`. A program that adds to [`registry`] first has it with laws, conditions and sources of its own.
 pub use cli::main;
@@ -211,6 +213,9 @@ pub mod parts {
     }
     pub mod quantity {
         pub use crate::quantity::*;
+    }
+    pub mod track {
+        pub use crate::track::*;
     }
     pub mod expression {
         pub use crate::expression::*;

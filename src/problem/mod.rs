@@ -19,6 +19,7 @@ pub mod certificates;
 mod cost;
 mod cost_rows;
 mod culprit;
+pub mod effects;
 mod ended;
 mod exact;
 mod from_cloud;

@@ -4,7 +4,8 @@ use super::across::{Aligned, Apart, Beyond, Joined, LaneByLane, Other, Traces};
 use super::balance::{BlockBalance, FacePower, boundary_loss, boundary_power};
 use super::block::Block;
 use super::block_work::FluxWork;
-use super::outside::ExternalWork;
+use super::outside::{ExternalWork, FaceForces};
+use super::phase::{Part, Ticks};
 use super::volume::{Arrays, width};
 use crate::boundary::{FacePoint, Moment};
 use crate::lane::{F8, LANES, Lane, Lanes, load_array, store_array};
@@ -148,10 +149,14 @@ struct Sides<'a> {
 pub(super) struct Meter<'a> {
     /// The work on the block; none where nothing outside touches it.
     pub external: Option<&'a mut ExternalWork>,
+    /// The forces at the faces; none where nobody asks for them.
+    pub forces: Option<&'a mut FaceForces>,
     /// The balance; none where it is off.
     pub balance: Option<&'a mut BlockBalance>,
     /// The memory of the conditions at the block.
     pub memory: &'a mut [f64],
+    /// The clock of the thread.
+    pub phases: &'a mut Ticks,
 }
 
 /// What a face between cells adds to the balance of the block. The fluxes are found once more: without the balance they never come to
@@ -239,10 +244,14 @@ impl Block<'_> {
             if plan[face].has_boundary_or_interface {
                 let held = &mut nodes.held[2 * m * face..2 * m * (face + 1)];
                 let lift = &mut nodes.lift[UNKNOWNS * m * face..UNKNOWNS * m * (face + 1)];
+                let start = meter.phases.start();
                 self.boundary_and_interface_lanes(sides, lift, held, &mut meter);
+                meter.phases.book_part(Part::Conditions, start);
             }
             if let Some(balance) = &mut meter.balance {
+                let start = meter.phases.start();
                 flux.face_balance(scheme.kernel, FaceBalance { block: *self, sides, balance });
+                meter.phases.book_part(Part::FaceBalance, start);
             }
         }
     }
@@ -269,6 +278,12 @@ impl Block<'_> {
                 if let (Some(external), Neighbour::Boundary(_)) = (&mut meter.external, neighbour) {
                     let weight = line.basis.weights[point] * length * factor;
                     external.boundary.0[lane] += weight * boundary_power(&flux, normal);
+                    if let Some(forces) = &mut meter.forces {
+                        // The flux of momentum is -t*.
+                        let own = &mut forces.impulse[face];
+                        (0..2).for_each(|axis| own[axis].0[lane] -= weight * flux[DEFORMATION + axis]);
+                        forces.work[face].0[lane] += weight * boundary_power(&flux, normal);
+                    }
                     if let Some(balance) = &mut meter.balance {
                         balance.boundary.0[lane] += weight * boundary_loss(own, &flux, normal, lane);
                     }

@@ -62,7 +62,7 @@ pub use history::Histories;
 pub use law::Law;
 pub use loss::{Loss, LossKind, Site};
 pub use motion::Motion;
-pub use phase::{Phase, Phases};
+pub use phase::{Part, Phase, Phases};
 pub use rescue::Rescue;
 pub use runge_kutta::Tableau;
 pub use scheme::{Method, Scheme};
@@ -140,6 +140,18 @@ impl Work {
         sum
     }
 
+    /// Bytes that are held for single effects, see [`Held`].
+    pub fn held(&self) -> Held {
+        let corrections = self.corrections.as_ref().map_or(0, |memory| memory.bytes());
+        let rescue = self.corrections.as_ref().map_or(0, |memory| memory.rescue.as_ref().map_or(0, |own| own.bytes()));
+        Held {
+            balance: self.balance.as_ref().map_or(0, |blocks| size_of_val(&blocks[..])),
+            forces: self.outside.forces.as_ref().map_or(0, |forces| size_of_val(&forces[..])),
+            corrections: corrections - rescue,
+            rescue,
+        }
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let numbers = self.next.u.len() + self.next.internal.len() + 2 * self.speed.len() + self.tiles.numbers();
@@ -148,6 +160,19 @@ impl Work {
             + self.balance.as_ref().map_or(0, |blocks| size_of_val(&blocks[..]))
             + self.corrections.as_ref().map_or(0, |memory| memory.bytes())
     }
+}
+
+/// Bytes that the memory of steps holds for single effects.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Held {
+    /// The balance of energy.
+    pub balance: usize,
+    /// The meter of forces.
+    pub forces: usize,
+    /// Limiter and other corrections.
+    pub corrections: usize,
+    /// The rescue.
+    pub rescue: usize,
 }
 
 /// A stage of a step; ADER has one.
