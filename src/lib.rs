@@ -74,6 +74,7 @@
 #[macro_use]
 mod names;
 mod error;
+mod built;
 mod format;
 mod lane;
 pub mod tensor;
@@ -104,6 +105,7 @@ mod problem;
 mod stability;
 mod study;
 mod bench;
+mod effects;
 mod cli;
 
 pub use error::{Error, Place, Result};
@@ -153,6 +155,9 @@ pub struct Recipes;
 pub mod parts {
     pub mod error {
         pub use crate::error::*;
+    }
+    pub mod built {
+        pub use crate::built::*;
     }
     pub mod lane {
         pub use crate::lane::*;
@@ -234,5 +239,8 @@ pub mod parts {
     }
     pub mod bench {
         pub use crate::bench::*;
+    }
+    pub mod effects {
+        pub use crate::effects::*;
     }
 }

@@ -205,6 +205,22 @@ fn a_probe_is_a_line_of_one_sample_and_is_found_again_on_another_grid() {
 }
 
 #[test]
+fn a_spot_has_the_numbers_of_the_solution_to_the_bit() {
+    use dgmpm::parts::observe::{Solution, Spot};
+    for method in METHODS {
+        let body = impact().method(method).degree(2).end(1e-4);
+        let body = body.material("j2", scenes::STEEL, "yield_stress = 4e8\nhardening = 1e9");
+        let mut problem = body.problem(&[]);
+        problem.run().unwrap();
+        let Problem { scheme, state, body, .. } = &problem;
+        let solution = Solution::of_state(scheme, state, &body.material);
+        for (cell, xi) in [(0, [0.0, 0.3]), (7, [0.41, 1.0]), (35, [0.9, 0.13])] {
+            assert_eq!(Spot::new(scheme, cell, xi).of(scheme, state), solution.at(cell, xi), "{method} {cell}");
+        }
+    }
+}
+
+#[test]
 fn extremes_bracket_every_sample_and_are_where_they_say() {
     let folder = tempfile::tempdir().unwrap();
     let velocity = "field = \"velocity\"\ncomponent = \"1\"";

@@ -60,6 +60,11 @@ impl Scene {
             let what = "the snapshot has the memory of other boundary conditions".to_owned();
             return Err(fail(what, "give the [[boundary]] conditions of that run"));
         }
+        let groups = scheme.boundaries.len();
+        if !snapshot.received.is_empty() && snapshot.received.len() != 3 * groups {
+            let what = "the snapshot has the forces of other boundary groups".to_owned();
+            return Err(fail(what, "give the mesh of that run, with its groups"));
+        }
         // Where no output asks for it, the displacement may count from here: what is held are jumps that come now.
         Ok(unpacked(&snapshot, scheme, self.components()))
     }

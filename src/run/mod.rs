@@ -15,6 +15,7 @@ pub use report::{Report, dofs, peak_memory_mib};
 pub use treated::Treated;
 pub use watch::{Limits, Watch};
 
+use crate::built;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::observe::{Observer, View};
@@ -123,12 +124,15 @@ impl Run<'_, '_> {
         state: &mut State,
         report: &mut Report,
     ) -> Result<End, Stop> {
+        let wants = |what: fn(&dyn Observer) -> bool| self.observers.iter().any(|observer| what(&**observer));
+        let (forces, balance) = (wants(|observer| observer.wants_forces()), wants(|observer| observer.wants_balance()));
+        built::refuse(&[(built::FORCES, forces, "forces"), (built::BALANCE, balance, "the balance of energy")])?;
         let mut motion = Motion::unsurveyed(self.scheme, std::mem::take(state));
-        if self.observers.iter().any(|observer| observer.wants_balance()) {
+        if balance {
             motion = motion.with_balance(self.scheme);
         }
         // What nobody reads is not carried on: it would stand still.
-        match self.observers.iter().any(|observer| observer.wants_forces()) {
+        match forces {
             true => motion = motion.with_forces(self.scheme),
             false => motion.state.received = vec![],
         }

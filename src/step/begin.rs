@@ -15,6 +15,7 @@ use super::sweeps::Sweep;
 use super::volume;
 use super::worst::Worst;
 use super::{Method, Part, Phase, Scratch};
+use crate::built;
 use crate::lane::{Coefficient, F8, Lanes, prefetch, ticks};
 use crate::material::Material;
 use crate::operators::{PointMatrices, Share, with_nodes};
@@ -103,7 +104,7 @@ impl Begin<'_> {
             let points = &mut arrays.start;
             block.scheme.kernel.run(FieldsToPoints::<_, UNKNOWNS> { matrices, fields, nodes, between, points });
         });
-        if !block.scheme.sources.is_empty() {
+        if built::SOURCES && !block.scheme.sources.is_empty() {
             let count = block.scheme.operators.block_points(block.number);
             let start = phases.start();
             block.sources_at_points(points, count, arrays);
@@ -120,7 +121,7 @@ impl Begin<'_> {
             ask_for(later, 1);
             ForCoefficient::predict(block, Predict { block, matrices, metric, internal, arrays });
         });
-        if !block.scheme.sources.is_empty() {
+        if built::SOURCES && !block.scheme.sources.is_empty() {
             let ticks = std::mem::take(&mut self.scratch.points.ticks);
             self.scratch.phases.add_part(Part::Sources, ticks);
         }
@@ -154,7 +155,7 @@ impl Begin<'_> {
         let (metric, arrays, rate) = (block.metric(), &mut self.scratch.nodes, &mut *self.rate);
         with_nodes!(line.m, M => kernel.run(volume::Volume::<'_, M> { line, metric, arrays, rate }));
         let Scratch { nodes, phases, .. } = &mut *self.scratch;
-        if !block.scheme.sources.is_empty() {
+        if built::SOURCES && !block.scheme.sources.is_empty() {
             let start = phases.start();
             block.sources_at_nodes(&nodes.mean, &mut nodes.source);
             block.find_masses(&mut nodes.masses);
@@ -228,7 +229,7 @@ impl<C: Coefficient> LawWork for Predict<'_, C> {
         let Self { block, matrices, metric, internal, arrays } = self;
         let Method::Ader { time, sweeps } = &block.scheme.method else { return };
         let (weights, dt, kernel) = (&time.weights[..], block.stage.dt, block.scheme.kernel);
-        let moving = block.scheme.sources.iter().any(|source| source.depends_on_velocity());
+        let moving = built::SOURCES && block.scheme.sources.iter().any(|source| source.depends_on_velocity());
         let renew = |sweep: &Sweep, arrays: &mut predictor::Arrays| {
             if let Some(points) = block.points() {
                 let start = ticks();

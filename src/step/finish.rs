@@ -14,6 +14,7 @@ use super::survey::{Examine, History};
 use super::volume::Masses;
 use super::worst::Worst;
 use super::{Part, Phase, Scratch, Speeds, Survey, across, curl, curl_core, flux};
+use crate::built;
 use crate::lane::{F8, Lanes, Work};
 use crate::operators::curl_free::Relax;
 use crate::operators::with_nodes;
@@ -102,7 +103,7 @@ impl Finish<'_> {
     fn metered_control_of_the_curl(&mut self, u: &mut [F8]) {
         self.meter_sources(u);
         self.meter(u, |balance, energy| (balance.corrected, balance.energy) = (energy, energy));
-        if self.block.scheme.curl.is_some() {
+        if built::CURL && self.block.scheme.curl.is_some() {
             self.control_of_the_curl(u);
             self.meter(u, |balance, energy| balance.energy = energy);
         }
@@ -127,7 +128,7 @@ impl Finish<'_> {
     fn meter_sources(&mut self, u: &[F8]) {
         let (block, n) = (self.block, self.block.scheme.operators.nodes());
         let Some(external) = self.external.as_deref_mut() else { return };
-        if block.scheme.sources.is_empty() {
+        if !built::SOURCES || block.scheme.sources.is_empty() {
             return;
         }
         let masses = &mut self.scratch.nodes.masses;
@@ -139,7 +140,7 @@ impl Finish<'_> {
 
     /// Books the energy of `u` where the balance is on.
     fn meter(&mut self, u: &[F8], book: impl Fn(&mut BlockBalance, F8)) {
-        let Some(balance) = self.balance.as_deref_mut() else { return };
+        let (true, Some(balance)) = (built::BALANCE, self.balance.as_deref_mut()) else { return };
         let (Block { scheme, number: block, .. }, dt) = (self.block, self.block.stage.dt);
         let (internal, start) = (self.block.internal(self.state), self.scratch.phases.start());
         book(balance, BlockEnergy { scheme, block, u, internal, dt, scratch: &mut *self.scratch }.find());

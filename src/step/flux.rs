@@ -8,6 +8,7 @@ use super::outside::{ExternalWork, FaceForces};
 use super::phase::{Part, Ticks};
 use super::volume::{Arrays, width};
 use crate::boundary::{FacePoint, Moment};
+use crate::built;
 use crate::lane::{F8, LANES, Lane, Lanes, load_array, store_array};
 use crate::mesh::{FACES, map};
 use crate::operators::{Metric, Neighbour, Side};
@@ -248,7 +249,7 @@ impl Block<'_> {
                 self.boundary_and_interface_lanes(sides, lift, held, &mut meter);
                 meter.phases.book_part(Part::Conditions, start);
             }
-            if let Some(balance) = &mut meter.balance {
+            if let (true, Some(balance)) = (built::BALANCE, &mut meter.balance) {
                 let start = meter.phases.start();
                 flux.face_balance(scheme.kernel, FaceBalance { block: *self, sides, balance });
                 meter.phases.book_part(Part::FaceBalance, start);
@@ -278,13 +279,13 @@ impl Block<'_> {
                 if let (Some(external), Neighbour::Boundary(_)) = (&mut meter.external, neighbour) {
                     let weight = line.basis.weights[point] * length * factor;
                     external.boundary.0[lane] += weight * boundary_power(&flux, normal);
-                    if let Some(forces) = &mut meter.forces {
+                    if let (true, Some(forces)) = (built::FORCES, &mut meter.forces) {
                         // The flux of momentum is -t*.
                         let own = &mut forces.impulse[face];
                         (0..2).for_each(|axis| own[axis].0[lane] -= weight * flux[DEFORMATION + axis]);
                         forces.work[face].0[lane] += weight * boundary_power(&flux, normal);
                     }
-                    if let Some(balance) = &mut meter.balance {
+                    if let (true, Some(balance)) = (built::BALANCE, &mut meter.balance) {
                         balance.boundary.0[lane] += weight * boundary_loss(own, &flux, normal, lane);
                     }
                 }

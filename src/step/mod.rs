@@ -70,6 +70,7 @@ pub use survey::{Speeds, Survey};
 pub use sweeps::Sweeps;
 
 use crate::boundary::TimeNode;
+use crate::built;
 use crate::lane::{F8, ticks};
 use crate::state::State;
 use begin::Begin;
@@ -232,7 +233,7 @@ impl Scheme {
         }
         work.next.time = time;
         work.next.step = state.step + 1;
-        if work.corrections.is_some() {
+        if built::CORRECTIONS && work.corrections.is_some() {
             let start = ticks();
             self.correct(state, dt, work);
             let scratch = work.scratch[0].get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());

@@ -1,6 +1,7 @@
 //! A body in motion: its state, what the survey tells of it, and the memory of the steps.
 
 use super::{Loss, Scheme, Survey, Work};
+use crate::built;
 use crate::state::{Received, State};
 
 /// A state that goes from step to step.
@@ -91,13 +92,15 @@ impl Motion {
     fn make(&mut self, scheme: &Scheme, dt: f64, time: f64) -> Result<(), Loss> {
         let Self { state, survey, work, other } = self;
         let result = match scheme.rescue {
-            Some(rescue) => scheme.step_with(rescue, (state, survey), (dt, time), work, other),
-            None => {
+            Some(rescue) if built::CORRECTIONS => scheme.step_with(rescue, (state, survey), (dt, time), work, other),
+            _ => {
                 scheme.step_to(state, survey, dt, time, work);
                 scheme.surveyed(work, other)
             }
         };
-        work.receive(scheme, &state.received);
+        if built::FORCES {
+            work.receive(scheme, &state.received);
+        }
         result
     }
 
