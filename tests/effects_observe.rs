@@ -50,7 +50,7 @@ const MOMENTUM: f64 = 9.0 * 200.0 * scenes::STEEL[2];
 fn assert_impulse(table: &Table, change: [f64; 2], what: &str) {
     for (axis, change) in change.into_iter().enumerate() {
         let of = |side: &&str| last(table, &format!("{side}_impulse_{} [N s/m]", axis + 1));
-        let impulse: f64 = scenes::SIDES.iter().map(|side| of(&side)).sum();
+        let impulse: f64 = scenes::SIDES.iter().map(of).sum();
         // The roundings of some hundred steps; 1e-10 is what the figure has to be good for.
         assert!((impulse - change).abs() < 1e-10 * MOMENTUM, "{what}, {axis}: {impulse:e} {change:e}");
     }
@@ -359,5 +359,21 @@ fn what_is_wrong_with_an_output_through_time_is_one_message_and_exit_code_2() {
         assert_eq!(output.status.code(), Some(2), "{table}: {message}");
         assert!(message.contains(words) && message.matches("error").count() == 1, "{table}: {message}");
         assert!(!out.exists(), "{table}");
+    }
+}
+
+#[test]
+fn a_force_on_a_periodic_group_is_refused_where_no_condition_acts() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = Body::square(4).method("rk-dgfem").degree(1).end(1e-5).write(folder.path(), "square");
+    let sides =
+        r#"{group="left",kind="periodic",partner="right"},{group="bottom",kind="free"},{group="top",kind="free"}"#;
+    for group in ["left", "right"] {
+        let mut command = Command::cargo_bin("dgmpm").unwrap();
+        let force = format!("output=[{{kind=\"force\",name=\"f\",groups=[\"top\",\"{group}\"]}}]");
+        command.arg("run").arg(&scene).args(["--set", &format!("boundary=[{sides}]"), "--set", &force, "--out"]);
+        let output = command.arg(folder.path().join("out")).output().unwrap();
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && message.contains("is periodic"), "{group}: {message}");
     }
 }

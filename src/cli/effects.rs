@@ -33,6 +33,9 @@ pub fn run(args: &Args) -> Result<()> {
     };
     let costs = effects::measure(scene, &args.folder, &|line| say(line))?;
     let name = scene.file_name().unwrap_or_default().to_string_lossy();
-    let head = [format!("scene {name} on one thread, commit {}", args.commit), machine(Kernel::widest())];
+    let head = [
+        format!("scene {name} on one thread, commit {}", args.commit),
+        machine(Kernel::widest()).split(", threads").next().unwrap_or_default().to_owned(),
+    ];
     pending::write_text(out, &effects::text(&costs, &head))
 }
