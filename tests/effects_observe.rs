@@ -362,6 +362,53 @@ fn what_is_wrong_with_an_output_through_time_is_one_message_and_exit_code_2() {
     }
 }
 
+/// Name and place of the effects of a run, and whether each has taken time.
+fn effects_of(body: &Body) -> Vec<(String, String, bool)> {
+    let folder = tempfile::tempdir().unwrap();
+    run(body, folder.path());
+    let text = std::fs::read_to_string(folder.path().join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let text = |effect: &serde_json::Value, key: &str| effect[key].as_str().unwrap().to_owned();
+    let of = |effect: &serde_json::Value| {
+        assert!(
+            effect["share"].as_f64().unwrap() >= 0.0 && effect["bytes"].is_u64() && effect["by_points"].is_boolean()
+        );
+        (text(effect, "effect"), text(effect, "where"), effect["seconds"].as_f64().unwrap() > 0.0)
+    };
+    summary["effects"].as_array().unwrap().iter().map(of).collect()
+}
+
+#[test]
+fn a_run_reports_the_effects_that_it_had_and_no_others() {
+    // 8 blocks: the clock is read for each of them, so that nothing that is done can take no time.
+    let plain = Body::square(8).velocity(["10*sin(pi*x)", "0"]).method("ader-dgmpm").degree(2).end(2e-5);
+    let names = |body: &Body| effects_of(body).into_iter().map(|(name, ..)| name).collect::<Vec<_>>();
+    assert_eq!(names(&plain), ["curl control rotation", "output ledger"]);
+    assert_eq!(names(&plain.clone().table("curl", "control = \"off\"")), ["output ledger"]);
+    let full = plain.side("left", "wall", "").side("top", "absorbing", "").ledger(1);
+    let full = full.table("[source]", "kind = \"gravity\"\nvalue = [0, -9.81]").table("limiter", "kind = \"moment\"");
+    let full = full.table("[quantity]", "name = \"l\"\nkind = \"extent\"").table("[regrid]", "at = [1e-5]\nrefine = 2");
+    let all = effects_of(&output(full, "force", "walls", ""));
+    let named: Vec<&str> = all.iter().map(|(name, ..)| &name[..]).collect();
+    let expected = [
+        "condition wall",
+        "condition absorbing",
+        "source gravity",
+        "curl control rotation",
+        "limiter moment",
+        "rescue",
+        "balance of energy",
+        "regrid",
+        "output ledger",
+        "output force",
+        "quantities",
+    ];
+    assert_eq!(named, expected);
+    assert!(all.iter().all(|(_, _, took_time)| *took_time), "{all:?}");
+    // 16 cells on a side of 1 m after the change, 3 points each.
+    assert_eq!((&all[0].1[..], &all[2].1[..], &all[7].1[..]), ("left, 48 points", "256 cells", "1 time"));
+}
+
 #[test]
 fn a_force_on_a_periodic_group_is_refused_where_no_condition_acts() {
     let folder = tempfile::tempdir().unwrap();
