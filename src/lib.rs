@@ -74,6 +74,7 @@
 #[macro_use]
 mod names;
 mod error;
+mod built;
 mod format;
 mod lane;
 pub mod tensor;
@@ -97,6 +98,7 @@ mod observe;
 mod run;
 mod exact;
 mod quantity;
+mod track;
 mod expression;
 pub mod registry;
 mod scene;
@@ -104,6 +106,7 @@ mod problem;
 mod stability;
 mod study;
 mod bench;
+mod effects;
 mod cli;
 
 pub use error::{Error, Place, Result};
@@ -138,6 +141,7 @@ pub use exact::{Errors, Exact, Norms, errors};
 
 // Quantities of interest.
 pub use quantity::{Quantity, Seen};
+pub use track::{Column, Track, Tracked};
 
 /// The command line, `dgmpm ..`. A program that adds to [`registry`] first has it with laws, conditions and sources of its own.
 pub use cli::main;
@@ -152,6 +156,9 @@ pub struct Recipes;
 pub mod parts {
     pub mod error {
         pub use crate::error::*;
+    }
+    pub mod built {
+        pub use crate::built::*;
     }
     pub mod lane {
         pub use crate::lane::*;
@@ -213,6 +220,9 @@ pub mod parts {
     pub mod quantity {
         pub use crate::quantity::*;
     }
+    pub mod track {
+        pub use crate::track::*;
+    }
     pub mod expression {
         pub use crate::expression::*;
     }
@@ -230,5 +240,8 @@ pub mod parts {
     }
     pub mod bench {
         pub use crate::bench::*;
+    }
+    pub mod effects {
+        pub use crate::effects::*;
     }
 }

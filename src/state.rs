@@ -7,6 +7,15 @@ use crate::tensor::{AXES, DEFORMATION};
 /// Components of U = (F11, F12, F21, F22, p1, p2).
 pub const UNKNOWNS: usize = DEFORMATION + AXES;
 
+/// What the body has received through a boundary group since its run began, per metre of thickness.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Received {
+    /// int t* dS dt, N s/m.
+    pub impulse: [f64; AXES],
+    /// int t*.v* dS dt, J/m.
+    pub work: f64,
+}
+
 /// The grid unknowns at the Gauss nodes, the master copy between steps.
 ///
 /// Layout: `[block][component][node]`, node a = i M + j with i along xi1. Components are the six of U and, where an
@@ -29,6 +38,8 @@ pub struct State {
     /// The displacement that a grid of this run began with, `[block][component][node]`, whose jumps are not held: they are those of
     /// the projection. Empty on the first grid.
     pub unheld: Vec<F8>,
+    /// By boundary group of the mesh; empty where nobody asks for it ([`crate::step::Motion::with_forces`]).
+    pub received: Vec<Received>,
 }
 
 impl State {
@@ -43,6 +54,7 @@ impl State {
             internal: vec![],
             boundary: vec![],
             unheld: vec![],
+            received: vec![],
         }
     }
 

@@ -7,7 +7,7 @@ use crate::exact::errors;
 use crate::problem::Problem;
 use crate::run::dofs;
 use crate::state::State;
-use crate::step::phase::PHASES;
+use crate::step::phase::{PARTS, PHASES};
 use crate::step::{Loss, Motion, Phases};
 use cpu_time::ProcessTime;
 use std::time::{Duration, Instant};
@@ -139,7 +139,7 @@ impl Clocked<'_> {
 }
 
 /// Before the first step.
-const UNKNOWN: Phases = Phases { seconds: [f64::INFINITY; PHASES] };
+const UNKNOWN: Phases = Phases { seconds: [f64::INFINITY; PHASES], parts: [0.0; PARTS] };
 
 /// Steps a problem on threads of its own. The first step, which meets new memory, is not timed.
 ///
@@ -177,7 +177,8 @@ fn finish(clocked: Clocked, threads: usize, end: Option<&State>) -> Measured {
     let Subject { problem: Problem { scheme, body, .. }, wave, points, .. } = clocked.subject;
     let mesh = &body.mesh;
     let error = errors(wave, mesh, scheme, end.unwrap_or(&clocked.motion.state), &body.material).standard;
-    let phases = Phases { seconds: clocked.quietest.seconds.map(|s| s * clocked.steps as f64) };
+    let seconds = clocked.quietest.seconds.map(|s| s * clocked.steps as f64);
+    let phases = Phases { seconds, ..Phases::default() };
     let state = size_of_val(&clocked.motion.state.u[..]);
     Measured {
         threads,

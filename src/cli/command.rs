@@ -1,6 +1,6 @@
 //! The subcommands.
 
-use super::{bench, export, mesh, preprocess, regrid, run, seed, solve, stability, study};
+use super::{bench, effects, export, mesh, preprocess, regrid, run, seed, solve, stability, study};
 use crate::error::Result;
 use clap::Subcommand;
 
@@ -25,6 +25,8 @@ pub enum Command {
     Stability(stability::Args),
     /// Measure the speed of the step against the peaks of this machine
     Bench(bench::Args),
+    /// List what a scene can ask for, with keys, formulas and costs
+    Effects(effects::Args),
     /// Bring a stopped run to another mesh
     Regrid(regrid::Args),
     /// Write a run's snapshots for ParaView, meshio and DOLFINx
@@ -46,6 +48,7 @@ impl Command {
             Command::Study(args) => study::run(&args),
             Command::Stability(args) => stability::run(&args),
             Command::Bench(args) => bench::run(&args),
+            Command::Effects(args) => effects::run(&args),
             Command::Regrid(args) => regrid::run(&args),
             Command::Export(args) => export::run(&args),
         }

@@ -3,6 +3,7 @@
 mod args;
 mod bench;
 mod command;
+mod effects;
 mod export;
 mod interrupt;
 mod mesh;

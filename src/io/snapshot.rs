@@ -5,7 +5,8 @@
 //! p2 at the Gauss nodes (node i along xi1, j along xi2); `displacement` (cells, 2, M, M) or empty; `internal` (n), the
 //! internal variables point by point: cells in the order of the mesh, points in that of the cloud (nodes a = i M + j for
 //! ADER-DGFEM and RK-DGFEM), variables in that of the cell's law, which may have none; `boundary` (n), the memory of boundary
-//! conditions, likewise; `corrected`, `rescued` (cells), what a limiter and the rescue did, where the run has one. Attributes
+//! conditions, likewise; `received` (groups, 3), what the body has received through each boundary group since the run began (impulse in
+//! N s/m and work in J/m), where an output asks for it; `corrected`, `rescued` (cells), what a limiter and the rescue did, where the run has one. Attributes
 //! `mesh`, `cloud`: the files of the run folder that the state lives on.
 
 use std::path::{Path, PathBuf};
@@ -39,6 +40,8 @@ pub struct Snapshot {
     /// The memory of boundary conditions, cells in the order of the mesh, faces, points along the face, numbers; none for
     /// conditions without memory.
     pub boundary: Vec<f64>,
+    /// By boundary group of the mesh impulse (2, N s/m) and work (J/m) since the run began; empty where no output asks for it.
+    pub received: Vec<f64>,
     /// Of each cell, 1 where a limiter or another correction changed it in the last step; empty where there is none.
     pub corrected: Vec<f64>,
     /// Of each cell, in how many steps since this grid began it was stepped again at order 0; empty as `corrected`.
@@ -141,6 +144,9 @@ impl Snapshot {
         if !self.boundary.is_empty() {
             arrays.push(("boundary", vec![self.boundary.len()], ArrayRef::F64(&self.boundary)));
         }
+        if !self.received.is_empty() {
+            arrays.push(("received", vec![self.received.len() / 3, 3], ArrayRef::F64(&self.received)));
+        }
         if !self.corrected.is_empty() {
             arrays.push(("corrected", vec![self.corrected.len()], ArrayRef::F64(&self.corrected)));
             arrays.push(("rescued", vec![self.rescued.len()], ArrayRef::F64(&self.rescued)));
@@ -166,9 +172,10 @@ impl Snapshot {
         let grid = GridFiles { mesh: name("mesh", mesh), cloud: name("cloud", cloud) };
         // Files of earlier versions have no `unheld`, and those of runs without such a memory no `boundary`.
         let knows = |name: &str| store.names().any(|known| known == name);
-        let known = [knows("unheld"), knows("boundary"), knows("corrected") && knows("rescued")];
+        let known = [knows("unheld"), knows("boundary"), knows("corrected") && knows("rescued"), knows("received")];
         let unheld = if known[0] { store.reals("unheld", &[2, side, side])? } else { vec![] };
         let boundary = if known[1] { store.reals("boundary", &[])? } else { vec![] };
+        let received = if known[3] { store.reals("received", &[3])? } else { vec![] };
         let [corrected, rescued] = match known[2] {
             true => [store.reals("corrected", &[])?, store.reals("rescued", &[])?],
             false => [vec![], vec![]],
@@ -179,6 +186,7 @@ impl Snapshot {
             rescued,
             unheld,
             boundary,
+            received,
             time: store.real("time")?,
             step,
             degree,

@@ -1,6 +1,6 @@
 //! `lines/<name>.csv`: fields along a straight line of the initial configuration.
 
-use super::{Field, NewGrid, Observer, Schedule, Solution, View};
+use super::{Field, NewGrid, Observer, Schedule, Spot, View};
 use crate::cloud::locate::Locator;
 use crate::error::Error;
 use crate::io::csv::Table;
@@ -24,8 +24,8 @@ pub struct Line {
     table: Table,
     samples: Samples,
     at: Vec<Sample>,
-    /// The law of each cell.
-    material: Vec<usize>,
+    /// The samples on the present grid, once a state of it has been seen.
+    spots: Vec<Spot>,
 }
 
 /// A sample of a line in the mesh.
@@ -46,18 +46,12 @@ impl Line {
     ///
     /// # Errors
     /// A sample lies outside the mesh, or the file cannot be created.
-    pub fn create(
-        path: &Path,
-        mesh: &Mesh,
-        material: &[usize],
-        samples: &Samples,
-        schedule: Schedule,
-    ) -> Result<Self, Error> {
+    pub fn create(path: &Path, mesh: &Mesh, samples: &Samples, schedule: Schedule) -> Result<Self, Error> {
         let at = samples.locate(mesh).map_err(|outside| Error::input(outside.to_string(), Outside::REMEDY))?;
         let names: Vec<String> = samples.fields.iter().flat_map(|field| field.components()).collect();
         let columns: Vec<&str> = ["t", "s", "x", "y"].into_iter().chain(names.iter().map(String::as_str)).collect();
         let table = Table::create(path, &columns)?;
-        Ok(Self { schedule, table, samples: samples.clone(), at, material: material.to_vec() })
+        Ok(Self { schedule, table, samples: samples.clone(), at, spots: vec![] })
     }
 }
 
@@ -111,11 +105,12 @@ impl Observer for Line {
     }
 
     fn observe(&mut self, view: &View) -> Result<(), Error> {
-        let solution = Solution::of_state(view.scheme, view.state, &self.material);
-        for sample in &self.at {
-            let point = solution.at(sample.cell, sample.xi);
+        if self.spots.is_empty() {
+            self.spots = self.at.iter().map(|at| Spot::new(view.scheme, at.cell, at.xi)).collect();
+        }
+        for (sample, spot) in self.at.iter().zip(&self.spots) {
             let mut row = vec![view.state.time, sample.s, sample.x[0], sample.x[1]];
-            self.samples.fields.iter().for_each(|field| field.push(solution.law(sample.cell), &point, &mut row));
+            spot.push(&self.samples.fields, view.scheme, view.state, &mut row);
             self.table.push(&row)?;
         }
         self.table.flush()
@@ -124,7 +119,7 @@ impl Observer for Line {
     fn regrid(&mut self, grid: &NewGrid) -> Result<(), Error> {
         let at = self.samples.locate(grid.mesh);
         self.at = at.map_err(|outside| Error::input(outside.to_string(), Outside::REMEDY))?;
-        self.material = grid.material.to_vec();
+        self.spots.clear();
         Ok(())
     }
 }

@@ -8,6 +8,7 @@ mod line;
 mod schedule;
 mod snapshots;
 mod solution;
+mod spot;
 
 pub use fields::Field;
 pub use ledger::{Contents, Ledger};
@@ -15,6 +16,7 @@ pub use line::{Line, Outside, Sample, Samples};
 pub use schedule::{Schedule, When};
 pub use snapshots::{Snapshots, take, write};
 pub use solution::{Point, Solution};
+pub use spot::Spot;
 
 use crate::error::Error;
 use crate::io::snapshot::GridFiles;
@@ -57,6 +59,11 @@ pub struct NewGrid<'a> {
 pub trait Observer {
     /// Whether this observer needs the balance of energy.
     fn wants_balance(&self) -> bool {
+        false
+    }
+
+    /// Whether this observer needs what the body receives through each boundary group, [`State::received`].
+    fn wants_forces(&self) -> bool {
         false
     }
 

@@ -73,6 +73,7 @@ pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
         false => scheme.operators.blocks.unpack(&state.unheld, 2 * n),
     };
     let (internal, boundary) = (scheme.internal_of(state), scheme.boundary_memory_of(state));
+    let received = state.received.iter().flat_map(|group| [group.impulse[0], group.impulse[1], group.work]).collect();
     let (time, step, degree) = (state.time, state.step, scheme.operators.degree);
-    Snapshot { time, step, degree, u, displacement, unheld, internal, boundary, ..Snapshot::default() }
+    Snapshot { time, step, degree, u, displacement, unheld, internal, boundary, received, ..Snapshot::default() }
 }

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::io::snapshot::Snapshot;
 use crate::run::Folder;
 use crate::scene::Scene;
-use crate::state::{State, UNKNOWNS};
+use crate::state::{Received, State, UNKNOWNS};
 use crate::step::Scheme;
 use std::path::Path;
 
@@ -33,7 +33,9 @@ fn unpacked(snapshot: &Snapshot, scheme: &Scheme, components: usize) -> State {
     let blocks = &scheme.operators.blocks;
     let state = State::pack(blocks, scheme.operators.nodes(), components, &snapshot.unknowns(components));
     let unheld = blocks.pack(&snapshot.unheld, snapshot.unheld_stride(), |_| 0.0);
-    let mut state = State { time: snapshot.time, step: snapshot.step, unheld, ..state };
+    let received = snapshot.received.as_chunks::<3>().0.iter();
+    let received = received.map(|&[one, two, work]| Received { impulse: [one, two], work }).collect();
+    let mut state = State { time: snapshot.time, step: snapshot.step, unheld, received, ..state };
     scheme.set_internal(&mut state, &snapshot.internal);
     scheme.set_boundary_memory(&mut state, &snapshot.boundary);
     state
@@ -57,6 +59,11 @@ impl Scene {
         if !snapshot.boundary.is_empty() && snapshot.boundary.len() != wanted {
             let what = "the snapshot has the memory of other boundary conditions".to_owned();
             return Err(fail(what, "give the [[boundary]] conditions of that run"));
+        }
+        let groups = scheme.boundaries.len();
+        if !snapshot.received.is_empty() && snapshot.received.len() != 3 * groups {
+            let what = "the snapshot has the forces of other boundary groups".to_owned();
+            return Err(fail(what, "give the mesh of that run, with its groups"));
         }
         // Where no output asks for it, the displacement may count from here: what is held are jumps that come now.
         Ok(unpacked(&snapshot, scheme, self.components()))

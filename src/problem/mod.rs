@@ -19,6 +19,7 @@ pub mod certificates;
 mod cost;
 mod cost_rows;
 mod culprit;
+pub mod effects;
 mod ended;
 mod exact;
 mod from_cloud;
@@ -57,6 +58,7 @@ pub use stopped::{Stopped, changes};
 pub use store::{Recent, Store};
 pub use summary::Outcome;
 
+use crate::built;
 use crate::error::{Error, Result};
 use crate::io::snapshot::GridFiles;
 use crate::lane::Kernel;
@@ -184,6 +186,11 @@ impl<'a> Setup<'a> {
         };
         let mut scheme = scene.build_scheme(&body.mesh, operators, kernel)?;
         scheme.corrections.extend(corrections);
+        built::refuse(&[
+            (built::SOURCES, !scheme.sources.is_empty(), "a source"),
+            (built::CORRECTIONS, !scheme.corrections.is_empty() || scheme.rescue.is_some(), "a limiter or the rescue"),
+            (built::CURL, scheme.curl.is_some(), "the control of the curl"),
+        ])?;
         Ok((scheme, origin))
     }
 

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::observe::{Contents, Field, Observer, Schedule};
 use crate::registry::outputs::{Recording, fields_of};
-use crate::registry::{Chosen, OUTPUTS, defaults};
+use crate::registry::{self, Chosen, Entry, OUTPUTS, defaults};
 use crate::run::Folder;
 use crate::scene::{Boundary, Output, Quantity, Scene, When};
 use crate::state::UNKNOWNS;
@@ -40,10 +40,23 @@ impl Scene {
     /// A line that leaves it, with its place in the scene.
     pub fn check_lines(&self, mesh: &Mesh) -> Result<()> {
         for (i, output) in self.outputs.iter().enumerate() {
+            self.check_joined(i, (output.what.build().conditions)(&output.what.values))?;
             let check = (output.what.build().check)(&output.what.values, mesh);
             check.map_err(|fault| self.error(&format!("output.{i}.{}", fault.key), fault.what, fault.remedy))?;
         }
         Ok(())
+    }
+
+    /// Whether a condition acts on the groups that an output looks at: the faces of periodic groups are inner faces.
+    fn check_joined(&self, output: usize, groups: &[String]) -> Result<()> {
+        let is_joined = |name: &String| {
+            let joined =
+                self.boundaries.iter().filter_map(|own| own.partner().map(|(_, partner)| [&own.group[..], partner]));
+            joined.flatten().any(|group| group == name)
+        };
+        let Some(k) = groups.iter().position(is_joined) else { return Ok(()) };
+        let what = format!("\"{}\" is periodic: no condition acts there", groups[k]);
+        Err(self.error(&format!("output.{output}.groups.{k}"), what, "name a group with a condition"))
     }
 
     /// The fields that an export shows: those of the first `fields` output, or all that the state has.
@@ -69,16 +82,20 @@ impl Problem {
             balance: false,
         };
         let (mesh, material) = (&body.mesh, &body.material[..]);
+        let materials =
+            scene.materials.iter().map(|material| material.group.clone().unwrap_or_else(|| "body".to_owned()));
+        let materials: Vec<String> = materials.collect();
         let make = |name: &str, what: &Chosen<_>, schedule: Schedule| {
             let fields = fields_of(what, &scheme.laws);
-            (what.build().make)(&what.values, Recording { name, fields, schedule, mesh, material, folder, contents })
+            let materials = materials.clone();
+            let to = Recording { name, fields, schedule, mesh, scheme, material, materials, folder, contents };
+            (what.build().make)(&what.values, to)
         };
         let mut out: Vec<Box<dyn Observer>> = Vec::new();
         for output in &scene.outputs {
             out.push(make(&output.name, &output.what, schedule_of(&output.when, output.exact_times))?);
         }
-        for entry in OUTPUTS.iter().filter(|entry| scene.outputs.iter().all(|output| output.what.name() != entry.name))
-        {
+        for entry in always(scene) {
             let Some(always) = entry.build.always else { continue };
             let mut values = defaults(entry.parameters, scene.scheme.degree);
             let schedule = schedule_of(&When::EverySteps(always(&mut values)), false);
@@ -86,6 +103,12 @@ impl Problem {
         }
         Ok(out)
     }
+}
+
+/// The outputs that every run has, and this scene does not name.
+pub(super) fn always(scene: &Scene) -> impl Iterator<Item = &'static Entry<registry::outputs::Output>> {
+    let named = |name: &str| scene.outputs.iter().any(|output| output.what.name() == name);
+    OUTPUTS.iter().filter(move |entry| entry.build.always.is_some() && !named(entry.name))
 }
 
 /// When something is done.

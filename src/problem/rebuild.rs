@@ -20,7 +20,7 @@ use crate::regrid::points::{Placed, Policy, Requirements, histories, place};
 use crate::regrid::{self, Field, Grid, Transfer};
 use crate::run::{Folder, Pause};
 use crate::scene::{Scene, When};
-use crate::state::State;
+use crate::state::{Received, State};
 use crate::step::{Scheme, Totals};
 use rstar::{RTree, primitives::GeomWithData};
 use std::collections::HashMap;
@@ -193,6 +193,7 @@ impl Problem {
         after.set_internal(&mut new, &internal);
         let boundary = self.boundary_memory_on(&body.mesh, &after);
         after.set_boundary_memory(&mut new, &boundary);
+        new.received = received_on(&body.mesh, &old.mesh, state);
         Ok(Some(Moved { body, scheme: after, state: new, transfer, placed }))
     }
 
@@ -299,6 +300,16 @@ fn conditions_on(mesh: &Mesh, old: &Mesh, scheme: &Scheme) -> Vec<Arc<dyn Bounda
     let number = |group: &String| old.edge_groups.iter().position(|known| known == group);
     let of = |group: &String| number(group).and_then(|k| scheme.boundaries.get(k)).cloned();
     mesh.edge_groups.iter().map(|group| of(group).unwrap_or_else(|| Arc::new(Free))).collect()
+}
+
+/// What the groups of a new mesh have received so far, by their names; nothing where nobody asks for it.
+fn received_on(mesh: &Mesh, old: &Mesh, state: &State) -> Vec<Received> {
+    if state.received.is_empty() {
+        return vec![];
+    }
+    let number = |group: &String| old.edge_groups.iter().position(|known| known == group);
+    let of = |group: &String| number(group).and_then(|k| state.received.get(k)).copied();
+    mesh.edge_groups.iter().map(|group| of(group).unwrap_or_default()).collect()
 }
 
 /// F at points, in the order of the cloud.

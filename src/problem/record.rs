@@ -34,6 +34,7 @@ impl Problem {
             Ok(observers)
         });
         let ended = ready.map_err(Into::into).and_then(|observers| {
+            // In this order: `effects` names the clocks of observers by it.
             let mut observers: Vec<Box<dyn Observer + '_>> =
                 observers.into_iter().map(|observer| observer as _).collect();
             observers.extend(more.into_iter().map(|observer| observer as Box<dyn Observer>));

@@ -4,6 +4,7 @@ use super::{Problem, Regrids};
 use crate::error::{Error, Result};
 use crate::observe::Observer;
 use crate::run::{End, Folder, Report, Run, Stop};
+use cpu_time::ProcessTime;
 use std::sync::atomic::AtomicBool;
 
 /// Who looks on, and where files go.
@@ -46,7 +47,9 @@ impl Problem {
             observers = run.observers;
             let (step, time) = (self.state.step, self.state.time);
             let named = |why| at_step(why, step, time);
+            let clock = ProcessTime::now();
             let (words, totals) = regrids.rebuild(self).map_err(named)?;
+            report.regrids = (report.regrids.0 + clock.elapsed().as_secs_f64(), report.regrids.1 + 1);
             observers.iter_mut().for_each(|observer| words.iter().for_each(|word| observer.notice(word)));
             if let Some([before, after]) = totals {
                 report.regrid(&before, &after);

@@ -1,6 +1,7 @@
 //! What a run came to: `summary.json`.
 
 use super::Problem;
+use super::effects::{self, effects};
 use crate::error::Result;
 use crate::exact::{Errors, Exact, errors};
 use crate::format::{Row, row};
@@ -45,6 +46,7 @@ impl<'a> Outcome<'a> {
             rows.push(row(name, text.trim_end()));
         }
         rows.push(row("instruction set", format!("{:?}", self.problem.scheme.kernel)));
+        rows.extend(effects::rows(&effects(self.problem, self.report), self.report));
         rows
     }
 
@@ -62,6 +64,7 @@ impl<'a> Outcome<'a> {
             let numbers = self.quantities.iter().map(|measured| (measured.name.clone(), json!(measured.value)));
             all.insert("quantities".to_owned(), Value::Object(numbers.collect()));
         }
+        all.insert("effects".to_owned(), effects::json(&effects(self.problem, self.report), self.report));
         all.insert("title".to_owned(), json!(scene.title));
         all.insert("method".to_owned(), json!(scene.scheme.method.name()));
         all.insert("degree".to_owned(), json!(scene.scheme.degree));

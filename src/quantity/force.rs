@@ -1,6 +1,6 @@
 //! The force that a boundary exerts on the body.
 
-use super::extent::on_face;
+use super::places::on_face;
 use super::{Quantity, Seen};
 use crate::boundary::{FacePoint, Moment, TimeNode};
 use crate::error::Error;
@@ -10,8 +10,9 @@ use crate::riemann::{Medium, Trace};
 use crate::tensor::times;
 
 /// int t*_k dS over the faces of a boundary group, N/m (per metre of thickness): t* is the traction that the condition of the
-/// group answers the trace of the state with, at the Gauss points of its faces. Steps take t* of predicted traces between two states: the
-/// mean over a run is the momentum balance to .05 % on 8 x 4 cells, half of it on cells half as large.
+/// group answers the trace of the state with, at the Gauss points of its faces. Steps take t* of predicted traces between two states:
+/// the mean over a run is that of the steps, the impulse that the body has received over the time, so that it is the balance of momentum
+/// to rounding.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Force {
     /// The name of the boundary group.
@@ -32,6 +33,14 @@ impl Quantity for Force {
             (0..FACES).filter(own).for_each(|face| force += self.of_face(seen, cell, face, &mut memory));
         }
         force
+    }
+
+    fn integral(&self, seen: &Seen) -> Option<f64> {
+        seen.state.received.get(self.group).map(|group| group.impulse[self.axis])
+    }
+
+    fn is_metered(&self) -> bool {
+        true
     }
 
     fn moved(&mut self, mesh: &Mesh) -> Result<(), Error> {

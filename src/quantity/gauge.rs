@@ -1,7 +1,7 @@
 //! The observer of all quantities of a run.
 
 use super::reading::Reading;
-use super::{Quantity, Seen, When};
+use super::{Quantity, Seen, Statistic, When};
 use crate::error::Error;
 use crate::exact::Exact;
 use crate::observe::{self, NewGrid, Observer, Schedule, View};
@@ -81,7 +81,7 @@ impl Gauge {
         let seen = Seen::new(view.mesh, view.scheme, view.state, &self.material);
         for ((named, reading), expected) in self.all.iter_mut().zip(&mut self.expected) {
             if reading.needs(time, view.dt) {
-                reading.take(time, named.quantity.of(&seen));
+                reading.take(time, named.quantity.of(&seen), named.quantity.integral(&seen));
             }
             let at = match named.when {
                 When::End => time,
@@ -96,6 +96,11 @@ impl Gauge {
 }
 
 impl Observer for &mut Gauge {
+    fn wants_forces(&self) -> bool {
+        let mean = |named: &Named| named.when == When::Over(Statistic::Mean);
+        self.all.iter().any(|(named, _)| mean(named) && named.quantity.is_metered())
+    }
+
     fn schedule(&mut self) -> &mut Schedule {
         &mut self.schedule
     }

@@ -1,8 +1,9 @@
 //! The distance of two points of the material, in the current configuration.
 
-use super::{Places, Quantity, Seen};
+use super::{Place, Places, Quantity, Seen};
 use crate::error::Error;
 use crate::mesh::Mesh;
+use crate::observe::Spot;
 
 /// |x(B) - x(A)|, x = X + u; m.
 pub struct Length {
@@ -12,9 +13,9 @@ pub struct Length {
 
 impl Quantity for Length {
     fn of(&self, seen: &Seen) -> f64 {
-        let solution = seen.solution();
-        let now = |place: &super::places::Place| {
-            let (x, u) = (Places::position(seen.mesh, place), solution.at(place.cell, place.xi).displacement);
+        let now = |place: &Place| {
+            let spot = Spot::new(seen.scheme, place.cell, place.xi);
+            let (x, u) = (Places::position(seen.mesh, place), spot.of(seen.scheme, seen.state).displacement);
             [x[0] + u[0], x[1] + u[1]]
         };
         match &self.ends.all[..] {

@@ -27,7 +27,7 @@ pub use gauge::{Gauge, Measured, Named};
 pub use length::Length;
 pub use overshoot::{Overshoot, overshoot};
 pub use peak::{Extreme, Peak};
-pub use places::{Outside, Places};
+pub use places::{Outside, Place, Places};
 pub use reading::{Statistic, When};
 pub use value::PointValue;
 
@@ -48,6 +48,17 @@ pub trait Quantity {
     /// and laws.
     fn exact(&self, _exact: &dyn Exact, _seen: &Seen, _time: f64) -> Option<f64> {
         None
+    }
+
+    /// int q dt since the start of the run, in a state of a run that meters it: the mean over the run is then that of the steps, and
+    /// not that of the states between them.
+    fn integral(&self, _seen: &Seen) -> Option<f64> {
+        None
+    }
+
+    /// Whether [`Quantity::integral`] is metered by runs that are asked to ([`crate::observe::Observer::wants_forces`]).
+    fn is_metered(&self) -> bool {
+        false
     }
 
     /// Called when the run goes on on another mesh. By default it does nothing; what keeps places in cells finds them again.

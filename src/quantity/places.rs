@@ -47,6 +47,8 @@ impl From<Outside> for Error {
 enum Where {
     /// In each cell the nodes, and points of the same lines on its faces and corners: (N+3)^2.
     Body,
+    /// The same in the cells of a group, or on the edges of a group where no group of cells has the name.
+    Group(String),
     /// Along a line, with equal distances.
     Line(Samples),
     /// At these points X, m.
@@ -76,8 +78,21 @@ pub struct Places {
 impl Places {
     /// In each cell its nodes, and points on its faces and corners.
     pub fn body(seen: &Seen) -> Self {
-        let mut places = Self { of: Where::Body, degree: seen.scheme.operators.degree, all: vec![] };
-        places.all = places.in_cells(seen.mesh);
+        Self::everywhere(seen.mesh, seen.scheme.operators.degree)
+    }
+
+    /// The same for a degree.
+    pub fn everywhere(mesh: &Mesh, degree: usize) -> Self {
+        let mut places = Self { of: Where::Body, degree, all: vec![] };
+        places.all = places.in_cells(mesh, |_| true);
+        places
+    }
+
+    /// In each cell of a group its nodes, and points on its faces and corners. Where the name is that of a group of edges: on these
+    /// edges the nodes of the face and its ends. Nothing where the mesh has neither.
+    pub fn group(name: &str, mesh: &Mesh, degree: usize) -> Self {
+        let mut places = Self { of: Where::Group(name.to_owned()), degree, all: vec![] };
+        places.all = places.in_group(mesh, name);
         places
     }
 
@@ -103,7 +118,8 @@ impl Places {
     /// A place outside of this mesh.
     pub fn on(mut self, mesh: &Mesh) -> Result<Self, Outside> {
         self.all = match &self.of {
-            Where::Body => self.in_cells(mesh),
+            Where::Body => self.in_cells(mesh, |_| true),
+            Where::Group(name) => self.in_group(mesh, name),
             Where::Line(samples) => {
                 let found = samples.locate(mesh).map_err(Outside::Line)?;
                 found.into_iter().map(|sample| Place { cell: sample.cell, xi: sample.xi, s: sample.s }).collect()
@@ -129,10 +145,27 @@ impl Places {
         Ok(())
     }
 
-    fn in_cells(&self, mesh: &Mesh) -> Vec<Place> {
+    fn in_group(&self, mesh: &Mesh, name: &str) -> Vec<Place> {
+        if let Some(group) = mesh.groups.iter().position(|known| known == name) {
+            return self.in_cells(mesh, |cell| mesh.cell_group[cell] == group);
+        }
+        let Some(group) = mesh.edge_groups.iter().position(|known| known == name) else { return vec![] };
+        let line = with_ends(&crate::basis::Lagrange::new(self.degree).nodes);
+        let edges = mesh.edges.iter().filter(|edge| edge.group == group);
+        let of = |edge: &crate::mesh::BoundaryEdge| {
+            let (cell, face) = (edge.cell, edge.face);
+            line.iter().map(|&along| Place { cell, xi: on_face(face, along), s: 0.0 }).collect::<Vec<_>>()
+        };
+        edges.flat_map(of).collect()
+    }
+
+    fn in_cells(&self, mesh: &Mesh, belongs: impl Fn(usize) -> bool) -> Vec<Place> {
         let line = with_ends(&crate::basis::Lagrange::new(self.degree).nodes);
         let xi: Vec<[f64; 2]> = line.iter().flat_map(|&a| line.iter().map(move |&b| [a, b])).collect();
-        (0..mesh.cells.len()).flat_map(|cell| xi.iter().map(move |&xi| Place { cell, xi, s: 0.0 })).collect()
+        (0..mesh.cells.len())
+            .filter(|cell| belongs(*cell))
+            .flat_map(|cell| xi.iter().map(move |&xi| Place { cell, xi, s: 0.0 }))
+            .collect()
     }
 
     /// Reference coordinates of a place, m.
@@ -149,4 +182,10 @@ impl Places {
 /// Nodes in [0, 1] and both ends.
 pub fn with_ends(nodes: &[f64]) -> Vec<f64> {
     [&[0.0], nodes, &[1.0]].concat()
+}
+
+/// The parent coordinates of a point of a face.
+pub(super) fn on_face(face: usize, along: f64) -> [f64; 2] {
+    let end = (face % 2) as f64;
+    if face < 2 { [end, along] } else { [along, end] }
 }

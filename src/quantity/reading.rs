@@ -47,12 +47,14 @@ pub(super) struct Reading {
     last: Option<[f64; 2]>,
     /// Of a mean: int q dt over the steps between two states that have a number, and the sum of these steps, s.
     sum: [f64; 2],
+    /// Of a mean that the steps meter: time and int q dt of the first state.
+    first: Option<[f64; 2]>,
 }
 
 impl Reading {
     /// Before the first state.
     pub fn new(when: When) -> Self {
-        Self { when, value: f64::NAN, settled: false, last: None, sum: [0.0; 2] }
+        Self { when, value: f64::NAN, settled: false, last: None, sum: [0.0; 2], first: None }
     }
 
     /// Whether the number of the state at `time` is needed; `dt` is the step that follows, 0 at the end of the run.
@@ -65,8 +67,14 @@ impl Reading {
         }
     }
 
-    /// Takes the number of a state.
-    pub fn take(&mut self, time: f64, value: f64) {
+    /// Takes the number of a state, and int q dt up to it where the steps meter it.
+    pub fn take(&mut self, time: f64, value: f64, integral: Option<f64>) {
+        if let (When::Over(Statistic::Mean), Some(integral)) = (self.when, integral) {
+            let [start, first] = *self.first.get_or_insert([time, integral]);
+            // A single state is its own mean.
+            self.value = if time > start { (integral - first) / (time - start) } else { value };
+            return;
+        }
         match (self.when, self.last) {
             (When::End, _) => self.value = value,
             (When::At(at), _) if time < at => {}
@@ -104,7 +112,7 @@ mod tests {
         for n in 0..=10 {
             let (time, dt) = (0.1 * f64::from(n), if n == 10 { 0.0 } else { 0.1 });
             if reading.needs(time, dt) {
-                reading.take(time, q(time));
+                reading.take(time, q(time), None);
                 taken += 1;
             }
         }
@@ -128,6 +136,15 @@ mod tests {
             assert!((value - expected).abs() < 1e-14, "{when:?}: {value}");
             assert!(taken <= states, "{when:?}: {taken} states");
         }
+    }
+
+    #[test]
+    fn a_mean_that_steps_meter_is_the_integral_over_the_time() {
+        let mut reading = Reading::new(When::Over(Statistic::Mean));
+        reading.take(1.0, 7.0, Some(10.0));
+        assert_eq!(reading.value, 7.0);
+        reading.take(3.0, 0.0, Some(15.0));
+        assert_eq!(reading.value, 2.5);
     }
 
     #[test]

@@ -16,6 +16,7 @@
 pub mod conditions;
 pub mod controls;
 pub mod fluxes;
+pub mod fields;
 pub mod grids;
 pub mod laws;
 pub mod layouts;

@@ -1,11 +1,18 @@
 //! What is recorded, `[[output]] kind = ..`.
 
+use super::fields::{
+    self, AXIS, COMPONENT, axis, check_component, component, field, field_names, has, known_fields, known_group,
+    unit_of_field,
+};
 use super::{ANY, Chosen, Entry, FINITE, Fault, Field, Form, Parameter, Preset, Table, Value, Values};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::observe::{Contents, Ledger, Line, Observer, Outside, Samples, Schedule, Snapshots};
+use crate::operators::Neighbour;
+use crate::quantity::{Extent, Length, Places, Quantity};
 use crate::run::Folder;
-use crate::step::Law;
+use crate::step::{Law, Scheme};
+use crate::track::{Energies, Extremes, Forces, Lengths, Probe, Track, Tracked};
 
 /// What there is to know of an output.
 pub struct Output {
@@ -20,10 +27,33 @@ pub struct Output {
     pub always: Option<fn(&mut Values) -> usize>,
     /// Whether it needs the displacement, beside that of a field.
     pub displacement: fn(&Values) -> bool,
+    /// The groups of edges whose conditions it looks at.
+    pub conditions: fn(&Values) -> &[String],
     /// Whether the mesh has what it records.
     pub check: fn(&Values, &Mesh) -> std::result::Result<(), Fault>,
     /// Makes its observer.
     pub make: fn(&Values, Recording) -> Result<Box<dyn Observer>>,
+}
+
+impl Output {
+    /// An output that needs nothing but its observer; a scene gives its times.
+    pub const fn of(make: fn(&Values, Recording) -> Result<Box<dyn Observer>>) -> Self {
+        Self {
+            has_fields: false,
+            snapshots: false,
+            every_steps: None,
+            always: None,
+            displacement: |_| false,
+            conditions: |_| &[],
+            check: |_, _| Ok(()),
+            make,
+        }
+    }
+
+    /// Numbers through time: at every step where the scene gives no times.
+    const fn track(make: fn(&Values, Recording) -> Result<Box<dyn Observer>>) -> Self {
+        Self { every_steps: Some(1), ..Self::of(make) }
+    }
 }
 
 /// What an observer is made for.
@@ -36,22 +66,24 @@ pub struct Recording<'a> {
     pub schedule: Schedule,
     /// The mesh.
     pub mesh: &'a Mesh,
+    /// The scheme.
+    pub scheme: &'a Scheme,
     /// The law of each cell.
     pub material: &'a [usize],
+    /// The name of each material: that of its group, or "body".
+    pub materials: Vec<String>,
     /// The folder of the run.
     pub folder: &'a Folder,
     /// What a ledger of the run has beside its first columns.
     pub contents: Contents,
 }
 
-/// The fields of every body, and the variables of all laws.
-pub(super) fn known_fields() -> Vec<Field> {
-    let laws: Vec<Law> = super::LAWS.iter().map(|entry| (entry.build)(&super::example(entry.parameters))).collect();
-    Field::of_laws(&laws)
-}
-
-pub(super) fn field_names() -> Vec<&'static str> {
-    known_fields().into_iter().map(Field::name).collect()
+impl Recording<'_> {
+    /// The observer of numbers through time.
+    fn track(self, what: impl Track + 'static) -> Result<Box<dyn Observer>> {
+        let path = self.folder.track(self.name);
+        Ok(Box::new(Tracked::create(&path, Box::new(what), self.material, self.schedule)?))
+    }
 }
 
 const fn named(default: Preset) -> Parameter {
@@ -72,11 +104,7 @@ pub static OUTPUTS: Table<Output> = Table::new(&[
         build: Output {
             has_fields: true,
             snapshots: true,
-            every_steps: None,
-            always: None,
-            displacement: |_| false,
-            check: |_, _| Ok(()),
-            make: |_, of| Ok(Box::new(Snapshots::new(&of.folder.snapshots(), of.schedule))),
+            ..Output::of(|_, of| Ok(Box::new(Snapshots::new(&of.folder.snapshots(), of.schedule))))
         },
     },
     Entry {
@@ -95,19 +123,15 @@ pub static OUTPUTS: Table<Output> = Table::new(&[
         },
         build: Output {
             has_fields: true,
-            snapshots: false,
-            every_steps: None,
-            always: None,
-            displacement: |_| false,
             check: |of, mesh| {
                 samples(of, vec![]).check(mesh).map_err(|outside| {
                     let key = if outside.sample == 0 { "from" } else { "to" };
                     Fault::new(key, outside.to_string(), Outside::REMEDY)
                 })
             },
-            make: |of, Recording { name, fields, schedule, mesh, material, folder, .. }| {
-                Ok(Box::new(Line::create(&folder.line(name), mesh, material, &samples(of, fields), schedule)?))
-            },
+            ..Output::of(|of, Recording { name, fields, schedule, mesh, folder, .. }| {
+                Ok(Box::new(Line::create(&folder.line(name), mesh, &samples(of, fields), schedule)?))
+            })
         },
     },
     Entry {
@@ -122,8 +146,6 @@ pub static OUTPUTS: Table<Output> = Table::new(&[
         )],
         check: ANY,
         build: Output {
-            has_fields: false,
-            snapshots: false,
             every_steps: Some(1),
             always: Some(|defaults| {
                 defaults.set("balance", Value::Boolean(false));
@@ -131,14 +153,189 @@ pub static OUTPUTS: Table<Output> = Table::new(&[
             }),
             // For the angular momentum.
             displacement: |of| of.boolean("balance"),
-            check: |_, _| Ok(()),
-            make: |of, Recording { schedule, folder, contents, .. }| {
+            ..Output::of(|of, Recording { schedule, folder, contents, .. }| {
                 let contents = Contents { balance: of.boolean("balance"), ..contents };
                 Ok(Box::new(Ledger::create(&folder.ledger(), schedule.with_end(), contents)?))
-            },
+            })
         },
     },
+    Entry {
+        name: "probe",
+        about: "a point of the material through time, its place x = X + u and fields: `tracks/<name>.csv`; what a line of one sample would be",
+        parameters: &[
+            TRACK,
+            Parameter::required("point", "the point X in the initial configuration", "m", Form::Vector(FINITE)),
+            fields(Preset::Names(&["cauchy_stress", "velocity"])),
+        ],
+        check: ANY,
+        build: Output {
+            has_fields: true,
+            displacement: |_| true,
+            check: |of, mesh| fields::place(Places::points(vec![of.vector("point")], mesh), ["point", "point"]),
+            ..Output::track(|of, mut to| {
+                let at = Places::points(vec![of.vector("point")], to.mesh)?;
+                let fields = std::mem::take(&mut to.fields);
+                to.track(Probe::new(at, fields))
+            })
+        },
+    },
+    Entry {
+        name: "force",
+        about: "force, impulse and work of the conditions of boundary groups on the body through time, per metre of thickness: `tracks/<name>.csv`",
+        parameters: &[
+            TRACK,
+            Parameter::new(
+                "groups",
+                "the groups of edges in the mesh, such as \"left\"",
+                "",
+                Form::Texts,
+                Preset::Absent("all on the boundary"),
+            ),
+        ],
+        check: ANY,
+        build: Output {
+            conditions: |of| of.texts("groups"),
+            check: check_groups,
+            ..Output::track(|of, to| {
+                let groups = groups(of.texts("groups"), to.mesh, to.scheme);
+                to.track(Forces::new(groups))
+            })
+        },
+    },
+    Entry {
+        name: "extreme",
+        about: "the smallest and the largest value of a field through time, and the points X of both: `tracks/<name>.csv`",
+        parameters: &[TRACK, field(Preset::Required), COMPONENT, GROUP],
+        check: check_component,
+        build: Output {
+            displacement: fields::shows_displacement,
+            check: check_group,
+            ..Output::track(|of, to| {
+                let at = places(of, &to);
+                to.track(Extremes::new(component(of), unit_of_field(of), at))
+            })
+        },
+    },
+    Entry {
+        name: "length",
+        about: "the distance of two points of the material, or how far a group or the body reaches along an axis, through time: `tracks/<name>.csv`",
+        parameters: &[
+            TRACK,
+            Parameter::new(
+                "from",
+                "one point",
+                "m",
+                Form::Vector(FINITE),
+                Preset::Absent("no distance, but an extent"),
+            ),
+            Parameter::new("to", "the other point", "m", Form::Vector(FINITE), Preset::Absent("as `from`")),
+            GROUP,
+            AXIS,
+        ],
+        check: check_length,
+        build: Output {
+            displacement: |_| true,
+            check: |of, mesh| match of.has("from") {
+                true => fields::place(Places::points(fields::ends(of).to_vec(), mesh), ["from", "to"]),
+                false => check_group(of, mesh),
+            },
+            ..Output::track(|of, to| {
+                let length: Box<dyn Quantity> = match of.has("from") {
+                    true => Box::new(Length { ends: Places::points(fields::ends(of).to_vec(), to.mesh)? }),
+                    false => Box::new(Extent { axis: axis(of), at: of.has("group").then(|| places(of, &to)) }),
+                };
+                to.track(Lengths(length))
+            })
+        },
+    },
+    Entry {
+        name: "energy",
+        about: "kinetic, strain and dissipated energy of each material through time, per metre of thickness: `tracks/<name>.csv`",
+        parameters: &[TRACK],
+        check: ANY,
+        build: Output::track(|_, mut to| {
+            let names = std::mem::take(&mut to.materials);
+            to.track(Energies { names })
+        }),
+    },
 ]);
+
+/// The name of numbers through time.
+const TRACK: Parameter = Parameter {
+    name: "name",
+    about: "the name of the file `tracks/<name>.csv`, unique",
+    unit: "",
+    form: Form::Text,
+    default: Preset::Required,
+};
+
+/// A part of the body.
+const GROUP: Parameter = Parameter {
+    name: "group",
+    about: "a group of cells or of edges in the mesh",
+    unit: "",
+    form: Form::Text,
+    default: Preset::Absent("the whole body"),
+};
+
+/// Whether the mesh has the group of cells or edges.
+fn check_group(of: &Values, mesh: &Mesh) -> std::result::Result<(), Fault> {
+    let Some(name) = of.maybe_text("group") else { return Ok(()) };
+    known_group("group", name, &[("cells", &mesh.groups), ("edges", &mesh.edge_groups)]).map(|_| ())
+}
+
+/// The group that an output names, or the whole body.
+fn places(of: &Values, to: &Recording) -> Places {
+    let degree = to.scheme.operators.degree;
+    of.maybe_text("group")
+        .map_or_else(|| Places::everywhere(to.mesh, degree), |group| Places::group(group, to.mesh, degree))
+}
+
+/// `from` and `to`, or neither; `group` and `axis` belong to an extent.
+fn check_length(of: &Values) -> std::result::Result<(), Fault> {
+    match (of.has("from"), of.has("to"), of.has("group")) {
+        (true, true, false) => fields::two_points(of),
+        (false, false, _) => Ok(()),
+        (true, true, true) => {
+            let what = "a length is a distance of two points or the extent of a group, and here it is both";
+            Err(Fault::new("group", what, "remove `group`, or `from` and `to`"))
+        }
+        (from, ..) => {
+            let (given, other) = if from { ("from", "to") } else { ("to", "from") };
+            let what = format!("the length has `{given}` and no `{other}`");
+            Err(Fault::new(given, what, "give both points, or none for the extent of a group or of the body"))
+        }
+    }
+}
+
+/// Whether the mesh has the groups of edges, with edges on the boundary.
+fn check_groups(of: &Values, mesh: &Mesh) -> std::result::Result<(), Fault> {
+    let counts = mesh.edge_counts();
+    for (k, name) in of.texts("groups").iter().enumerate() {
+        let key = format!("groups.{k}");
+        let group = known_group(&key, name, &[("boundary edges", &mesh.edge_groups)])?;
+        if counts[group].boundary == 0 {
+            let what = format!("no edge of \"{name}\" is on the boundary");
+            return Err(Fault::new(key, what, "name a group on which a condition acts"));
+        }
+    }
+    Ok(())
+}
+
+/// The groups of these names, or all that a face of the boundary belongs to, with their numbers.
+fn groups(names: &[String], mesh: &Mesh, scheme: &Scheme) -> Vec<(String, usize)> {
+    let mut faces = vec![false; mesh.edge_groups.len()];
+    for neighbour in scheme.operators.blocks.neighbours.iter().flatten().flatten() {
+        if let Neighbour::Boundary(group) = neighbour
+            && let Some(face) = faces.get_mut(*group)
+        {
+            *face = true;
+        }
+    }
+    let all = mesh.edge_groups.iter().enumerate().map(|(number, name)| (name.clone(), number));
+    let wanted = |name: &String, number: usize| if names.is_empty() { faces[number] } else { names.contains(name) };
+    all.filter(|(name, number)| wanted(name, *number)).collect()
+}
 
 fn samples(of: &Values, fields: Vec<Field>) -> Samples {
     Samples { ends: [of.vector("from"), of.vector("to")], count: of.integer("samples"), fields }
@@ -162,6 +359,7 @@ pub fn fields_of(output: &Chosen<Output>, laws: &[Law]) -> Vec<Field> {
 /// # Errors
 /// The first field that they lack.
 pub fn check_fields(output: &Chosen<Output>, laws: &[Law]) -> std::result::Result<(), Fault> {
+    fields::check_field(&output.values, laws)?;
     let fields = fields_of(output, laws);
     match fields.iter().position(|field| !field.is_of(laws)) {
         None => Ok(()),
@@ -174,14 +372,4 @@ pub fn check_fields(output: &Chosen<Output>, laws: &[Law]) -> std::result::Resul
             ))
         }
     }
-}
-
-/// The names of the laws that have a field.
-pub(super) fn has(field: Field) -> String {
-    let of = |entry: &&Entry<super::laws::Build>| {
-        let law = (entry.build)(&super::example(entry.parameters));
-        field.is_of(&[law])
-    };
-    let names: Vec<&str> = super::LAWS.iter().filter(of).map(|entry| entry.name).collect();
-    super::quoted(&names)
 }

@@ -1,18 +1,18 @@
 //! Quantities of interest, `[[quantity]] kind = ..`.
 
-use super::outputs::{field_names, has, known_fields};
-use super::{ANY, Chosen, Entry, FINITE, Fault, Field, Form, Parameter, Preset, Table, Values, quoted};
+use super::fields::{
+    AXIS, COMPONENT, axis, check_component, component, ends, field, known_group, place, shows_displacement, two_points,
+    unit_of_field,
+};
+use super::{ANY, Entry, FINITE, Fault, Form, Parameter, Preset, Table, Values};
 use crate::error::{self, Error};
 use crate::exact::Exact;
 use crate::mesh::Mesh;
-use crate::names::did_you_mean;
 use crate::observe::Samples;
 use crate::operators::Neighbour;
 use crate::quantity::{
-    Component, Energy, Extent, Extreme, Force, FrontWidth, Length, Outside, Overshoot, Part, Peak, Places, PointValue,
-    Quantity, Seen,
+    Energy, Extent, Extreme, Force, FrontWidth, Length, Overshoot, Part, Peak, Places, PointValue, Quantity, Seen,
 };
-use crate::step::Law;
 use std::sync::Arc;
 
 pub use crate::quantity::{Statistic, When};
@@ -53,31 +53,6 @@ const COUNT: Parameter = Parameter::new(
     Form::Integer(2, 1_000_000),
     Preset::Integer(SAMPLES),
 );
-
-/// x and y.
-const AXES: [&str; 2] = ["x", "y"];
-const AXIS: Parameter =
-    Parameter::new("axis", "the direction", "", Form::Name(|| AXES.to_vec(), &[]), Preset::Name("x"));
-
-const fn field(default: Preset) -> Parameter {
-    Parameter { name: "field", about: "the field", unit: "", form: Form::Name(field_names, &[]), default }
-}
-
-const COMPONENT: Parameter = Parameter::new(
-    "component",
-    "its component",
-    "",
-    Form::Name(component_names, &[]),
-    Preset::Absent("the field has one, or the length of the vector"),
-);
-
-/// The components of all fields.
-fn component_names() -> Vec<&'static str> {
-    let mut all: Vec<&str> = known_fields().into_iter().flat_map(Component::names).collect();
-    all.sort_unstable();
-    all.dedup();
-    all
-}
 
 fn names_of<T>(names: &[(&'static str, T)]) -> Vec<&'static str> {
     names.iter().map(|(name, _)| *name).collect()
@@ -137,7 +112,7 @@ pub static QUANTITIES: Table<Kind> = Table::new(&[
             is_error: false,
             displacement: |_| true,
             check: |_, _| Ok(()),
-            make: |of, _| Ok(Box::new(Extent { axis: axis(of) })),
+            make: |of, _| Ok(Box::new(Extent { axis: axis(of), at: None })),
         },
     },
     Entry {
@@ -315,30 +290,8 @@ fn lacks(kind: &str, what: &str, remedy: &str) -> Error {
     Error::input(format!("[[quantity]] of kind \"{kind}\": {what}"), remedy)
 }
 
-fn axis(of: &Values) -> usize {
-    usize::from(of.text("axis") == AXES[1])
-}
-
-fn ends(of: &Values) -> [[f64; 2]; 2] {
-    [of.vector("from"), of.vector("to")]
-}
-
 fn samples(of: &Values) -> Samples {
     Samples { ends: ends(of), count: of.integer("samples"), fields: vec![] }
-}
-
-/// A fault of places at their keys.
-fn place<T>(found: Result<T, Outside>, keys: [&str; 2]) -> Result<(), Fault> {
-    found.map(|_| ()).map_err(|outside| Fault::new(outside.key(keys), outside.to_string(), Outside::REMEDY))
-}
-
-/// `from` and `to` are two points.
-fn two_points(of: &Values) -> Result<(), Fault> {
-    let [from, to] = ends(of);
-    match from == to {
-        true => Err(Fault::new("to", "`from` and `to` are the same point", "give two points")),
-        false => Ok(()),
-    }
 }
 
 /// Whether the two numbers of a key, where it is given, are what they must be to each other.
@@ -352,64 +305,5 @@ fn differ(of: &Values, key: &str, fit: fn(f64, f64) -> bool, what: &str, remedy:
 
 /// The number of the boundary group in a mesh.
 fn group(of: &Values, mesh: &Mesh) -> Result<usize, Fault> {
-    let (name, known) = (of.text("group"), mesh.edge_groups.iter().map(String::as_str).collect::<Vec<_>>());
-    known.iter().position(|known| *known == name).ok_or_else(|| {
-        let remedy = format!("{}its groups of boundary edges are {}", did_you_mean(name, &known), known.join(", "));
-        Fault::new("group", format!("the mesh has no group \"{name}\""), remedy)
-    })
-}
-
-/// The field that a quantity names, where it has one.
-fn field_of(of: &Values) -> Option<Field> {
-    let name = of.maybe_text("field")?;
-    known_fields().into_iter().find(|field| field.name() == name)
-}
-
-/// The component that a quantity looks at; none where the field has no such component.
-fn maybe_component(of: &Values) -> Option<Component> {
-    let (field, given) = (field_of(of)?, of.maybe_text("component"));
-    // What goes through a front, or over its range, has a sign.
-    let signed = of.has("samples") && field == Field::Velocity;
-    Component::new(field, given.or(signed.then_some("1")))
-}
-
-/// As [`maybe_component`], of values that the entry has checked.
-fn component(of: &Values) -> Component {
-    maybe_component(of).unwrap_or_default()
-}
-
-/// Whether the field has the component.
-fn check_component(of: &Values) -> Result<(), Fault> {
-    let Some(field) = field_of(of).filter(|_| maybe_component(of).is_none()) else { return Ok(()) };
-    let (name, known) = (field.name(), Component::names(field));
-    let remedy = match known[..] {
-        [] => "remove `component`: the field has one only".to_owned(),
-        _ => format!("its components are {}", quoted(&known)),
-    };
-    match of.maybe_text("component") {
-        Some(given) => Err(Fault::new("component", format!("\"{name}\" has no component \"{given}\""), remedy)),
-        None => Err(Fault::new("field", format!("\"{name}\" needs a `component`"), remedy)),
-    }
-}
-
-fn unit_of_field(of: &Values) -> &'static str {
-    field_of(of).map_or("", Component::unit)
-}
-
-fn shows_displacement(of: &Values) -> bool {
-    field_of(of) == Some(Field::Displacement)
-}
-
-/// Whether the laws of a run have the field that a quantity names.
-///
-/// # Errors
-/// A field that they lack.
-pub fn check_field(quantity: &Chosen<Kind>, laws: &[Law]) -> Result<(), Fault> {
-    match field_of(&quantity.values).filter(|field| !field.is_of(laws)) {
-        None => Ok(()),
-        Some(field) => {
-            let what = format!("no material of the scene has \"{}\"", field.name());
-            Err(Fault::new("field", what, format!("give another field, or a material law = {}", has(field))))
-        }
-    }
+    known_group("group", of.text("group"), &[("boundary edges", &mesh.edge_groups)])
 }

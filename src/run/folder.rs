@@ -3,7 +3,7 @@
 use crate::error::Error;
 use std::path::{Path, PathBuf};
 
-/// `runs/<scene>/`: `scene.toml mesh.h5 cloud.h5 operators.h5 snapshots/ lines/ ledger.csv summary.json export/`, and after
+/// `runs/<scene>/`: `scene.toml mesh.h5 cloud.h5 operators.h5 snapshots/ lines/ tracks/ ledger.csv summary.json export/`, and after
 /// regrids `regrid.csv mesh_<step>.h5 cloud_<step>.h5`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Folder {
@@ -47,6 +47,11 @@ impl Folder {
         self.root.join("lines").join(format!("{name}.csv"))
     }
 
+    /// Numbers through time.
+    pub fn track(&self, name: &str) -> PathBuf {
+        self.root.join("tracks").join(format!("{name}.csv"))
+    }
+
     /// Energy and momentum over time.
     pub fn ledger(&self) -> PathBuf {
         self.root.join("ledger.csv")
@@ -82,8 +87,8 @@ impl Folder {
 
     /// Results of an earlier run that are there.
     fn results(&self) -> impl Iterator<Item = PathBuf> {
-        let all =
-            [self.snapshots(), self.root.join("lines"), self.ledger(), self.regrids(), self.summary(), self.export()];
+        let [lines, tracks] = ["lines", "tracks"].map(|name| self.root.join(name));
+        let all = [self.snapshots(), lines, tracks, self.ledger(), self.regrids(), self.summary(), self.export()];
         all.into_iter().filter(|path| path.exists()).chain(self.later_grids())
     }
 

@@ -15,11 +15,13 @@ pub use report::{Report, dofs, peak_memory_mib};
 pub use treated::Treated;
 pub use watch::{Limits, Watch};
 
+use crate::built;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::observe::{Observer, View};
 use crate::state::State;
 use crate::step::{Balance, EnergyMade, Motion, Scheme, Survey};
+use cpu_time::ProcessTime;
 use std::sync::atomic::{AtomicBool, Ordering};
 use watch::Alarm;
 
@@ -122,9 +124,17 @@ impl Run<'_, '_> {
         state: &mut State,
         report: &mut Report,
     ) -> Result<End, Stop> {
+        let wants = |what: fn(&dyn Observer) -> bool| self.observers.iter().any(|observer| what(&**observer));
+        let (forces, balance) = (wants(|observer| observer.wants_forces()), wants(|observer| observer.wants_balance()));
+        built::refuse(&[(built::FORCES, forces, "forces"), (built::BALANCE, balance, "the balance of energy")])?;
         let mut motion = Motion::unsurveyed(self.scheme, std::mem::take(state));
-        if self.observers.iter().any(|observer| observer.wants_balance()) {
+        if balance {
             motion = motion.with_balance(self.scheme);
+        }
+        // What nobody reads is not carried on: it would stand still.
+        match forces {
+            true => motion = motion.with_forces(self.scheme),
+            false => motion.state.received = vec![],
         }
         let end = self.go(pause, &mut motion, report);
         *state = motion.state;
@@ -143,7 +153,7 @@ impl Run<'_, '_> {
             let time = motion.state.time;
             let stop = pause.stop(time).unwrap_or(f64::INFINITY).min(self.next_stop(time));
             let dt = step_size(stop - time, self.settings.courant * h / motion.survey.fastest);
-            self.observe(motion, report.balance.as_ref(), dt)?;
+            self.observe(motion, report, dt)?;
             if self.interrupt.load(Ordering::Relaxed) {
                 return Err(Stop::Interrupted);
             }
@@ -167,7 +177,7 @@ impl Run<'_, '_> {
             return Err(kept.lost(loss, &motion.state, 0.0).into());
         }
         report.see(&last);
-        self.observe(motion, report.balance.as_ref(), 0.0)?;
+        self.observe(motion, report, 0.0)?;
         Ok(End::Done)
     }
 
@@ -177,11 +187,15 @@ impl Run<'_, '_> {
     }
 
     /// Shows the state to those who wait for it.
-    fn observe(&mut self, motion: &Motion, balance: Option<&Balance>, dt: f64) -> Result<(), Error> {
-        let view = view(self.mesh, self.scheme, motion, balance, dt);
-        for observer in &mut self.observers {
+    fn observe(&mut self, motion: &Motion, report: &mut Report, dt: f64) -> Result<(), Error> {
+        let view = view(self.mesh, self.scheme, motion, report.balance.as_ref(), dt);
+        report.observed.resize(self.observers.len(), (0.0, 0));
+        for (observer, (seconds, count)) in self.observers.iter_mut().zip(&mut report.observed) {
             if observer.schedule().due(view.state.step, view.state.time, dt) {
+                let clock = ProcessTime::now();
                 observer.observe(&view)?;
+                *seconds += clock.elapsed().as_secs_f64();
+                *count += 1;
             }
         }
         Ok(())

@@ -4,7 +4,7 @@ use super::watch::{Alarm, Limits, Watch};
 use super::{Kept, Treated};
 use crate::state::{State, UNKNOWNS};
 use crate::step::phase::{NAMES, Phases};
-use crate::step::{Balance, Motion, Scheme, Survey, Totals};
+use crate::step::{Balance, Held, Motion, Scheme, Survey, Totals};
 use cpu_time::ProcessTime;
 use serde_json::{Map, Value, json};
 use std::time::Instant;
@@ -18,6 +18,14 @@ pub struct Report {
     pub dt: [f64; 2],
     /// Seconds per phase, summed over threads.
     pub phases: Phases,
+    /// Seconds of each observer of the run, in their order, and how often it has observed.
+    pub observed: Vec<(f64, usize)>,
+    /// Seconds of the rescue: looking for lost cells, and stepping again.
+    pub rescue: f64,
+    /// Seconds of changes of grid, and how many there were.
+    pub regrids: (f64, usize),
+    /// Bytes held for single effects.
+    pub held: Held,
     /// Totals at the start.
     pub first: Option<Totals>,
     /// Totals at the end.
@@ -47,6 +55,10 @@ impl Default for Report {
             steps: 0,
             dt: [f64::INFINITY, 0.0],
             phases: Phases::default(),
+            observed: vec![],
+            rescue: 0.0,
+            regrids: (0.0, 0),
+            held: Held::default(),
             first: None,
             last: None,
             balance: None,
@@ -76,6 +88,7 @@ impl Report {
             self.treated = Treated::of(scheme);
             self.first = Some(first);
         }
+        self.held = work.held();
         let (start, state) = (state, size_of_val(&state.u[..]) + size_of_val(&state.internal[..]));
         self.bytes = self.bytes.max(scheme.operators.bytes() + work.bytes() + state + Kept::bytes(start));
     }
@@ -88,6 +101,7 @@ impl Report {
         self.dt = [self.dt[0].min(dt), self.dt[1].max(dt)];
         self.see(survey);
         self.phases.add(&work.take_phases());
+        self.rescue += work.take_rescue_seconds();
         if let Some(balance) = &mut self.balance {
             work.settle(scheme, balance);
         }

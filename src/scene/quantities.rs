@@ -5,8 +5,8 @@ use super::reader::Reader;
 use super::tables::{OVER, QUANTITY};
 use super::{Material, Quantity};
 use crate::error::Result;
-use crate::registry::quantities::{self, Statistic, When};
-use crate::registry::{QUANTITIES, Values};
+use crate::registry::quantities::{Statistic, When};
+use crate::registry::{QUANTITIES, Values, fields};
 
 /// What a study measures besides quantities: no quantity can have these names.
 pub const MEASURES: [&str; 2] = ["standard", "l1"];
@@ -22,7 +22,7 @@ pub(super) fn quantities(
     let mut all: Vec<Quantity> = Vec::with_capacity(tables.len());
     for mut table in tables {
         let quantity = quantity(&mut table, span, degree)?;
-        quantities::check_field(&quantity.what, &laws).map_err(|fault| table.fault(&fault))?;
+        fields::check_field(&quantity.what.values, &laws).map_err(|fault| table.fault(&fault))?;
         if all.iter().any(|other| other.name == quantity.name) {
             let what = format!("two [[quantity]] have the name \"{}\"", quantity.name);
             return Err(table.wrong("name", what, "give each a `name` of its own"));

@@ -77,7 +77,8 @@ fn all(page: &mut String) {
     head(
         page,
         "[[output]]",
-        "What is recorded, and when: one of `at`, `every`, `every_steps`; a ledger has a default.",
+        "What is recorded, and when: one of `at`, `every`, `every_steps`. A ledger and numbers through time (`tracks/`) are recorded at every \
+         step by default.",
     );
     keys(page, &[tables::OUTPUT, tables::WHEN, &[tables::EXACT_TIMES]].concat());
     entries(page, "kind", &OUTPUTS, |_| String::new());

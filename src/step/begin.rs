@@ -14,8 +14,9 @@ use super::sources::AddSources;
 use super::sweeps::Sweep;
 use super::volume;
 use super::worst::Worst;
-use super::{Method, Phase, Scratch};
-use crate::lane::{Coefficient, F8, Lanes, prefetch};
+use super::{Method, Part, Phase, Scratch};
+use crate::built;
+use crate::lane::{Coefficient, F8, Lanes, prefetch, ticks};
 use crate::material::Material;
 use crate::operators::{PointMatrices, Share, with_nodes};
 use crate::riemann::Looks;
@@ -96,16 +97,18 @@ impl Begin<'_> {
         let (block, Some(points)) = (self.block, self.block.points()) else { return };
         let n = block.scheme.operators.nodes();
         let fields = &block.unknowns(self.state)[..UNKNOWNS * n];
-        let Scratch { nodes, points: arrays, .. } = &mut *self.scratch;
+        let Scratch { nodes, points: arrays, phases } = &mut *self.scratch;
         let (nodes, between) = (&mut nodes.stage, &mut arrays.between);
         with_matrices!(self, points, [matrices, later] => {
             ask_for(later, 0);
             let points = &mut arrays.start;
             block.scheme.kernel.run(FieldsToPoints::<_, UNKNOWNS> { matrices, fields, nodes, between, points });
         });
-        if !block.scheme.sources.is_empty() {
+        if built::SOURCES && !block.scheme.sources.is_empty() {
             let count = block.scheme.operators.block_points(block.number);
+            let start = phases.start();
             block.sources_at_points(points, count, arrays);
+            phases.book_part(Part::Sources, start);
         }
     }
 
@@ -118,6 +121,10 @@ impl Begin<'_> {
             ask_for(later, 1);
             ForCoefficient::predict(block, Predict { block, matrices, metric, internal, arrays });
         });
+        if built::SOURCES && !block.scheme.sources.is_empty() {
+            let ticks = std::mem::take(&mut self.scratch.points.ticks);
+            self.scratch.phases.add_part(Part::Sources, ticks);
+        }
     }
 
     /// The averages of F, v and P by chi_p(X_a) (18).
@@ -147,12 +154,14 @@ impl Begin<'_> {
         let (block, kernel, line) = (self.block, self.block.scheme.kernel, &self.block.scheme.operators.line);
         let (metric, arrays, rate) = (block.metric(), &mut self.scratch.nodes, &mut *self.rate);
         with_nodes!(line.m, M => kernel.run(volume::Volume::<'_, M> { line, metric, arrays, rate }));
-        let nodes = &mut self.scratch.nodes;
-        if !block.scheme.sources.is_empty() {
+        let Scratch { nodes, phases, .. } = &mut *self.scratch;
+        if built::SOURCES && !block.scheme.sources.is_empty() {
+            let start = phases.start();
             block.sources_at_nodes(&nodes.mean, &mut nodes.source);
             block.find_masses(&mut nodes.masses);
             let external = self.external.as_deref_mut();
             kernel.run(AddSources { block, nodes, rate: self.rate, external });
+            phases.book_part(Part::Sources, start);
         }
         if self.state.has_displacement() {
             let count = block.scheme.operators.nodes();
@@ -220,10 +229,12 @@ impl<C: Coefficient> LawWork for Predict<'_, C> {
         let Self { block, matrices, metric, internal, arrays } = self;
         let Method::Ader { time, sweeps } = &block.scheme.method else { return };
         let (weights, dt, kernel) = (&time.weights[..], block.stage.dt, block.scheme.kernel);
-        let moving = block.scheme.sources.iter().any(|source| source.depends_on_velocity());
+        let moving = built::SOURCES && block.scheme.sources.iter().any(|source| source.depends_on_velocity());
         let renew = |sweep: &Sweep, arrays: &mut predictor::Arrays| {
             if let Some(points) = block.points() {
+                let start = ticks();
                 block.renew_sources(points, &time.integration, sweep, arrays);
+                arrays.ticks += ticks().wrapping_sub(start);
             }
         };
         let renew: Option<predictor::Renew> = if moving { Some(&renew) } else { None };

@@ -112,7 +112,21 @@ impl Totals {
 impl Scheme {
     /// Totals of a state; cells are added in a fixed order.
     pub fn totals(&self, state: &State) -> Totals {
-        let blocks: Vec<Totals> = (0..self.operators.blocks.len())
+        let mut sum = Totals::empty(state);
+        self.totals_of_blocks(state).iter().for_each(|block| sum.add(block));
+        sum
+    }
+
+    /// Totals of the cells of each law, in the order of the laws.
+    pub fn totals_by_law(&self, state: &State) -> Vec<Totals> {
+        let mut sums = vec![Totals::empty(state); self.laws.len()];
+        let blocks = self.totals_of_blocks(state);
+        blocks.iter().zip(&self.operators.blocks.material).for_each(|(block, &law)| sums[law].add(block));
+        sums
+    }
+
+    fn totals_of_blocks(&self, state: &State) -> Vec<Totals> {
+        (0..self.operators.blocks.len())
             .into_par_iter()
             .map(|block| {
                 let mut sum = Totals::empty(state);
@@ -123,10 +137,7 @@ impl Scheme {
                 }
                 sum
             })
-            .collect();
-        let mut sum = Totals::empty(state);
-        blocks.iter().for_each(|block| sum.add(block));
-        sum
+            .collect()
     }
 
     fn totals_of(&self, state: &State, block: usize, lane: usize) -> Totals {

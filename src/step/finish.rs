@@ -6,7 +6,7 @@ use super::block::Block;
 use super::block_energy::BlockEnergy;
 use super::lift::Lift;
 use super::meetings::Meetings;
-use super::outside::ExternalWork;
+use super::outside::{ExternalWork, FaceForces};
 use super::phase::Clock;
 use super::rotation::Rotation;
 use super::sources::SourceEnd;
@@ -14,7 +14,8 @@ use super::sums::Terms;
 use super::survey::{Examine, History};
 use super::volume::Masses;
 use super::worst::Worst;
-use super::{Phase, Scratch, Speeds, Survey, across, curl, curl_core, flux};
+use super::{Part, Phase, Scratch, Speeds, Survey, across, curl, curl_core, flux};
+use crate::built;
 use crate::lane::{F8, Lanes, Work};
 use crate::operators::curl_free::Relax;
 use crate::operators::with_nodes;
@@ -40,6 +41,8 @@ pub(super) struct Finish<'a> {
     pub new: Option<New<'a>>,
     /// The work that is done on it from outside; none where nothing outside touches it.
     pub external: Option<&'a mut ExternalWork>,
+    /// The forces at its faces; none where nobody asks for them.
+    pub forces: Option<&'a mut FaceForces>,
     /// Its balance of energy; none where it is off.
     pub balance: Option<&'a mut BlockBalance>,
     /// The memory of the conditions at it.
@@ -84,9 +87,11 @@ impl Finish<'_> {
     fn flux_and_lift(&mut self) {
         let (block, kernel, line) = (self.block, self.block.scheme.kernel, &self.block.scheme.operators.line);
         let (external, balance) = (self.external.as_deref_mut(), self.balance.as_deref_mut());
-        let meter = flux::Meter { external, balance, memory: &mut *self.memory };
-        block.lifted_fluxes(&self.traces, self.meetings, &mut self.scratch.nodes, meter);
-        let (metric, nodes) = (block.metric(), &self.scratch.nodes);
+        let forces = self.forces.as_deref_mut();
+        let Scratch { nodes, phases, .. } = &mut *self.scratch;
+        let meter = flux::Meter { external, forces, balance, memory: &mut *self.memory, phases };
+        block.lifted_fluxes(&self.traces, self.meetings, nodes, meter);
+        let (metric, nodes) = (block.metric(), &*nodes);
         let held = (block.scheme.flux.looks() == Looks::Displacement).then_some(&nodes.held[..]);
         let lift = &nodes.lift[..];
         with_nodes!(line.m, M => kernel.run(Lift::<'_, M> { line, metric, lift, held, rate: self.rate }));
@@ -101,7 +106,7 @@ impl Finish<'_> {
     fn metered_control_of_the_curl(&mut self, u: &mut [F8]) {
         self.meter_sources(u);
         self.meter(u, |balance, energy| (balance.corrected, balance.energy) = (energy, energy));
-        if self.block.scheme.curl.is_some() {
+        if built::CURL && self.block.scheme.curl.is_some() {
             self.control_of_the_curl(u);
             self.meter(u, |balance, energy| balance.energy = energy);
         }
@@ -126,7 +131,7 @@ impl Finish<'_> {
     fn meter_sources(&mut self, u: &[F8]) {
         let (block, n) = (self.block, self.block.scheme.operators.nodes());
         let Some(external) = self.external.as_deref_mut() else { return };
-        if block.scheme.sources.is_empty() {
+        if !built::SOURCES || block.scheme.sources.is_empty() {
             return;
         }
         let masses = &mut self.scratch.nodes.masses;
@@ -138,10 +143,11 @@ impl Finish<'_> {
 
     /// Books the energy of `u` where the balance is on.
     fn meter(&mut self, u: &[F8], book: impl Fn(&mut BlockBalance, F8)) {
-        let Some(balance) = self.balance.as_deref_mut() else { return };
+        let (true, Some(balance)) = (built::BALANCE, self.balance.as_deref_mut()) else { return };
         let (Block { scheme, number: block, .. }, dt) = (self.block, self.block.stage.dt);
-        let internal = self.block.internal(self.state);
-        book(balance, BlockEnergy { scheme, block, u, internal, dt, scratch: self.scratch }.find());
+        let (internal, start) = (self.block.internal(self.state), self.scratch.phases.start());
+        book(balance, BlockEnergy { scheme, block, u, internal, dt, scratch: &mut *self.scratch }.find());
+        self.scratch.phases.book_part(Part::CellBalance, start);
     }
 }
 

@@ -6,9 +6,11 @@ use super::block::Block;
 use super::block_work::FluxWork;
 use super::meeting_flux::Met;
 use super::meetings::Meetings;
-use super::outside::ExternalWork;
+use super::outside::{ExternalWork, FaceForces};
+use super::phase::{Part, Ticks};
 use super::volume::{Arrays, width};
 use crate::boundary::{FacePoint, Moment};
+use crate::built;
 use crate::lane::{F8, LANES, Lane, Lanes, load_array, store_array};
 use crate::mesh::{FACES, map};
 use crate::operators::{Metric, Neighbour, Side};
@@ -152,10 +154,21 @@ struct Sides<'a> {
 pub(super) struct Meter<'a> {
     /// The work on the block; none where nothing outside touches it.
     pub external: Option<&'a mut ExternalWork>,
+    /// The forces at the faces; none where nobody asks for them.
+    pub forces: Option<&'a mut FaceForces>,
     /// The balance; none where it is off.
     pub balance: Option<&'a mut BlockBalance>,
     /// The memory of the conditions at the block.
     pub memory: &'a mut [f64],
+    /// The clock of the thread.
+    pub phases: &'a mut Ticks,
+}
+
+impl Meter<'_> {
+    /// The work of the boundary on the block so far; none where nobody asks for forces.
+    fn work_so_far(&self) -> Option<F8> {
+        self.forces.as_ref().and(self.external.as_ref()).map(|external| external.boundary)
+    }
 }
 
 /// What a face between cells adds to the balance of the block. The fluxes are found once more: without the balance they never come to
@@ -244,10 +257,18 @@ impl Block<'_> {
             if plan[face].has_boundary_or_interface {
                 let held = &mut nodes.held[2 * m * face..2 * m * (face + 1)];
                 let lift = &mut nodes.lift[UNKNOWNS * m * face..UNKNOWNS * m * (face + 1)];
+                let start = meter.phases.start();
+                let before = if built::FORCES { meter.work_so_far() } else { None };
                 self.boundary_and_interface_lanes(sides, lift, held, &mut meter);
+                if let Some(before) = before {
+                    self.forces_at_face(face, lift, before, &mut meter);
+                }
+                meter.phases.book_part(Part::Conditions, start);
             }
-            if let Some(balance) = &mut meter.balance {
+            if let (true, Some(balance)) = (built::BALANCE, &mut meter.balance) {
+                let start = meter.phases.start();
                 flux.face_balance(scheme.kernel, FaceBalance { block: *self, sides, balance });
+                meter.phases.book_part(Part::FaceBalance, start);
             }
         }
     }
@@ -276,10 +297,26 @@ impl Block<'_> {
                 if let (Some(external), Neighbour::Boundary(_)) = (&mut meter.external, neighbour) {
                     let weight = line.basis.weights[point] * length * factor;
                     external.boundary.0[lane] += weight * boundary_power(&flux, normal);
-                    if let Some(balance) = &mut meter.balance {
+                    if let (true, Some(balance)) = (built::BALANCE, &mut meter.balance) {
                         balance.boundary.0[lane] += weight * boundary_loss(own, &flux, normal, lane);
                     }
                 }
+            }
+        }
+    }
+
+    /// Books the forces at a face, from its lifted numbers and the work on the block before it: once a face, so that where nobody asks
+    /// for forces no boundary point knows of them.
+    fn forces_at_face(&self, face: usize, lift: &[F8], before: F8, meter: &mut Meter) {
+        let (Some(external), Some(forces)) = (&meter.external, &mut meter.forces) else { return };
+        let neighbours = &self.scheme.operators.blocks.neighbours[self.number][face];
+        let (weights, factor) = (&self.scheme.operators.line.basis.weights, self.factor());
+        for (lane, _) in neighbours.iter().enumerate().filter(|(_, beyond)| matches!(beyond, Neighbour::Boundary(_))) {
+            forces.work[face].0[lane] += external.boundary.0[lane] - before.0[lane];
+            for (lift, weight) in lift.as_chunks::<UNKNOWNS>().0.iter().zip(weights) {
+                // The flux of momentum is -t*, and its lifted numbers are those times the length of the face.
+                let axes = lift[DEFORMATION..].iter().enumerate();
+                axes.for_each(|(axis, flux)| forces.impulse[face][axis].0[lane] -= weight * factor * flux.0[lane]);
             }
         }
     }

@@ -65,7 +65,7 @@ pub use law::Law;
 pub use loss::{Loss, LossKind, Site};
 pub use meetings::Pairing;
 pub use motion::Motion;
-pub use phase::{Phase, Phases};
+pub use phase::{Part, Phase, Phases};
 pub use rescue::Rescue;
 pub use runge_kutta::Tableau;
 pub use scheme::{Method, Scheme};
@@ -73,6 +73,7 @@ pub use survey::{Speeds, Survey};
 pub use sweeps::Sweeps;
 
 use crate::boundary::TimeNode;
+use crate::built;
 use crate::lane::{F8, ticks};
 use crate::state::State;
 use begin::Begin;
@@ -146,6 +147,18 @@ impl Work {
         sum
     }
 
+    /// Bytes that are held for single effects, see [`Held`].
+    pub fn held(&self) -> Held {
+        let corrections = self.corrections.as_ref().map_or(0, |memory| memory.bytes());
+        let rescue = self.corrections.as_ref().map_or(0, |memory| memory.rescue.as_ref().map_or(0, |own| own.bytes()));
+        Held {
+            balance: self.balance.as_ref().map_or(0, |blocks| size_of_val(&blocks[..])),
+            forces: self.outside.forces.as_ref().map_or(0, |forces| size_of_val(&forces[..])),
+            corrections: corrections - rescue,
+            rescue,
+        }
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let numbers = self.next.u.len() + self.next.internal.len() + 2 * self.speed.len() + self.tiles.numbers();
@@ -155,6 +168,19 @@ impl Work {
             + self.corrections.as_ref().map_or(0, |memory| memory.bytes())
             + self.meetings.as_ref().map_or(0, |meetings| meetings.bytes())
     }
+}
+
+/// Bytes that the memory of steps holds for single effects.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Held {
+    /// The balance of energy.
+    pub balance: usize,
+    /// The meter of forces.
+    pub forces: usize,
+    /// Limiter and other corrections.
+    pub corrections: usize,
+    /// The rescue.
+    pub rescue: usize,
 }
 
 /// A stage of a step; ADER has one.
@@ -217,7 +243,7 @@ impl Scheme {
         }
         work.next.time = time;
         work.next.step = state.step + 1;
-        if work.corrections.is_some() {
+        if built::CORRECTIONS && work.corrections.is_some() {
             let start = ticks();
             self.correct(state, dt, work);
             let scratch = work.scratch[0].get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());

@@ -1,7 +1,8 @@
 //! A body in motion: its state, what the survey tells of it, and the memory of the steps.
 
 use super::{Loss, Scheme, Survey, Work};
-use crate::state::State;
+use crate::built;
+use crate::state::{Received, State};
 
 /// A state that goes from step to step.
 ///
@@ -45,6 +46,13 @@ impl Motion {
         self
     }
 
+    /// The same with a meter of the forces at each boundary group: [`State::received`] goes on from what the state has, or begins at 0.
+    pub fn with_forces(mut self, scheme: &Scheme) -> Self {
+        self.work = self.work.with_forces();
+        self.state.received.resize(scheme.boundaries.len(), Received::default());
+        self
+    }
+
     /// Surveys the state at its points, nodes and faces ([`Scheme::survey_all`]): for a state that no step has made.
     ///
     /// # Errors
@@ -83,11 +91,17 @@ impl Motion {
     /// Makes the state after a step, with cells rescued where the scheme says so.
     fn make(&mut self, scheme: &Scheme, dt: f64, time: f64) -> Result<(), Loss> {
         let Self { state, survey, work, other } = self;
-        if let Some(rescue) = scheme.rescue {
-            return scheme.step_with(rescue, (state, survey), (dt, time), work, other);
+        let result = match scheme.rescue {
+            Some(rescue) if built::CORRECTIONS => scheme.step_with(rescue, (state, survey), (dt, time), work, other),
+            _ => {
+                scheme.step_to(state, survey, dt, time, work);
+                scheme.surveyed(work, other)
+            }
+        };
+        if built::FORCES {
+            work.receive(scheme, &state.received);
         }
-        scheme.step_to(state, survey, dt, time, work);
-        scheme.surveyed(work, other)
+        result
     }
 
     /// The state before the last step, whose memory the next step writes over, and its survey.

@@ -46,17 +46,37 @@ pub const NAMES: [&str; PHASES] = [
     "corrections",
 ];
 
+/// A part of phases that a scene asks for: its time counts in the phases too.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(usize)]
+pub enum Part {
+    /// Conditions at the boundary, and fluxes between materials: in the flux.
+    Conditions,
+    /// Sources: with grid to points, in the predictor and in the volume term.
+    Sources,
+    /// The balance of energy at the faces between cells: in the flux.
+    FaceBalance,
+    /// The energy of the cells for the balance: with the control of the curl.
+    CellBalance,
+}
+
+/// Number of parts.
+pub const PARTS: usize = 4;
+
 /// Seconds per phase.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Phases {
     /// Seconds, in the order of [`Phase`].
     pub seconds: [f64; PHASES],
+    /// Seconds of parts of them, in the order of [`Part`].
+    pub parts: [f64; PARTS],
 }
 
 impl Phases {
     /// Adds another's seconds.
     pub fn add(&mut self, other: &Phases) {
         self.seconds.iter_mut().zip(other.seconds).for_each(|(a, b)| *a += b);
+        self.parts.iter_mut().zip(other.parts).for_each(|(a, b)| *a += b);
     }
 }
 
@@ -74,6 +94,9 @@ pub(crate) struct Clock {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Ticks {
     sums: [u64; PHASES],
+    parts: [u64; PARTS],
+    /// For how many blocks the one under way stands; 0 where the clock is not read.
+    weight: u32,
     /// The clock is read for one in so many; 0 is as 1.
     every: u32,
     /// Since it was read.
@@ -92,9 +115,11 @@ impl Ticks {
     pub fn clock(&mut self) -> Clock {
         self.turn += 1;
         if self.turn < self.every {
+            self.weight = 0;
             return Clock { start: 0, weight: 0 };
         }
         self.turn = 0;
+        self.weight = self.every.max(1);
         Clock { start: ticks(), weight: self.every.max(1) }
     }
 
@@ -109,6 +134,26 @@ impl Ticks {
         counted::mark(phase as usize);
     }
 
+    /// Starts a part of a phase of the block under way. Only what a scene asks for has parts.
+    #[inline]
+    pub fn start(&self) -> u64 {
+        if self.weight > 0 { ticks() } else { 0 }
+    }
+
+    /// Books the time since [`Ticks::start`] on a part.
+    #[inline]
+    pub fn book_part(&mut self, part: Part, start: u64) {
+        if self.weight > 0 {
+            self.add_part(part, ticks().wrapping_sub(start));
+        }
+    }
+
+    /// Books ticks of a part of the block under way.
+    #[inline]
+    pub fn add_part(&mut self, part: Part, ticks: u64) {
+        self.parts[part as usize] += ticks * u64::from(self.weight);
+    }
+
     /// Books ticks that passed outside of blocks.
     pub fn add(&mut self, phase: Phase, ticks: u64) {
         self.sums[phase as usize] += ticks;
@@ -116,7 +161,8 @@ impl Ticks {
 
     /// The seconds so far at `rate` ticks each; from here on they count anew.
     pub fn take(&mut self, rate: f64) -> Phases {
-        Phases { seconds: std::mem::take(&mut self.sums).map(|ticks| ticks as f64 / rate) }
+        let (sums, parts) = (std::mem::take(&mut self.sums), std::mem::take(&mut self.parts));
+        Phases { seconds: sums.map(|ticks| ticks as f64 / rate), parts: parts.map(|ticks| ticks as f64 / rate) }
     }
 }
 

@@ -17,6 +17,7 @@ use crate::state::State;
 use crate::step::volume::Masses;
 use crate::tensor::{self, DEFORMATION};
 use rayon::prelude::*;
+use std::time::Instant;
 
 /// When a cell is rescued.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,12 +47,14 @@ pub(super) struct Memory {
     start: State,
     /// The lanes that are lost: `[block]`.
     lost: Vec<u8>,
+    /// Seconds spent on looking for lost cells and on stepping again, since [`Work::take_rescue_seconds`].
+    seconds: f64,
 }
 
 impl Memory {
     /// For states like `state` of so many blocks.
     pub fn new(state: &State, blocks: usize) -> Self {
-        Self { start: state.clone(), lost: vec![0; blocks] }
+        Self { start: state.clone(), lost: vec![0; blocks], seconds: 0.0 }
     }
 
     /// Bytes held.
@@ -78,6 +81,7 @@ impl Scheme {
         }
         self.step_to(state, survey, dt, time, work);
         let mut result = self.surveyed(work, out);
+        let clock = Instant::now();
         if let Some(memory) = work.corrections.as_deref_mut() {
             memory.loss[0] = 0.0;
         }
@@ -94,6 +98,9 @@ impl Scheme {
         }
         if result.is_ok() {
             count(work);
+        }
+        if let Some(own) = work.corrections.as_deref_mut().and_then(|memory| memory.rescue.as_mut()) {
+            own.seconds += clock.elapsed().as_secs_f64();
         }
         result
     }
@@ -214,6 +221,14 @@ impl Scheme {
                 out.iter_mut().zip(history).for_each(|(out, value)| out.0[lane] = value);
             }
         }
+    }
+}
+
+impl Work {
+    /// Seconds that the rescue took since the last call; 0 where there is none.
+    pub fn take_rescue_seconds(&mut self) -> f64 {
+        let own = self.corrections.as_deref_mut().and_then(|memory| memory.rescue.as_mut());
+        own.map_or(0.0, |own| std::mem::take(&mut own.seconds))
     }
 }
 

@@ -5,11 +5,12 @@ use super::begin::Begin;
 use super::block::Block;
 use super::finish::{Finish, New};
 use super::meetings::Meetings;
-use super::outside::{self, ExternalWork};
+use super::outside::{self, ExternalWork, FaceForces};
 use super::tile_memory::{Tile, Tiles};
 use super::tiles::{Event, Slot};
 use super::worst::Worst;
 use super::{Scheme, Scratch, Speeds, Stage, Survey, Work, across, with_scratch};
+use crate::built;
 use crate::lane::{self, F8};
 use crate::operators::Operators;
 use crate::state::State;
@@ -30,6 +31,8 @@ struct Pass<'a, B, F> {
 }
 
 impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
+    // By itself in profiles: `make proof` counts what it does.
+    #[inline(never)]
     fn run(mut self) {
         if self.step.phase == 0 {
             self.tile.worst = Worst::NONE;
@@ -61,6 +64,10 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
         if stage.number == 0 {
             external.iter_mut().for_each(|external| **external = ExternalWork::default());
             balance.iter_mut().for_each(|balance| **balance = BlockBalance::default());
+            if let (true, Some(forces)) = (built::FORCES, out.forces.as_deref_mut()) {
+                let own = outside::entry(outside, out.first, forces, number);
+                own.into_iter().for_each(|forces| *forces = FaceForces::default());
+            }
         }
         (step.begin)(Begin {
             block: Block { scheme, stage, number },
@@ -104,6 +111,8 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
         });
         let slots = &slots[stage.number * blocks..][..blocks];
         let external = outside::entry(outside, out.first, out.external, number);
+        let forces = out.forces.as_deref_mut().filter(|_| built::FORCES);
+        let forces = forces.and_then(|forces| outside::entry(outside, out.first, forces, number));
         let balance = out.balance.as_mut().and_then(|balance| balance.get_mut(at));
         let memory = (scheme.boundary_memory.range(number), scheme.boundary_memory.range(out.first).start);
         let memory = &mut out.memory[memory.0.start - memory.1..memory.0.end - memory.1];
@@ -116,6 +125,7 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
             traces: across::Traces { own: &tile.traces, seen, shown, slots },
             new,
             external,
+            forces,
             balance,
             memory,
             meetings,
@@ -146,6 +156,8 @@ struct Out<'a> {
     worst: &'a mut [Worst],
     /// The work on those blocks that something outside acts on.
     external: &'a mut [ExternalWork],
+    /// The forces there; none where nobody asks for them.
+    forces: Option<&'a mut [FaceForces]>,
     /// The balance of the blocks; none where it is off.
     balance: Option<&'a mut [BlockBalance]>,
     /// The memory of boundary conditions.
@@ -164,8 +176,9 @@ impl<'a> Out<'a> {
 
     /// The same for a shorter time.
     fn again(&mut self) -> Out<'_> {
-        let Self { first, u, internal, speed, worst, external, balance, memory } = self;
-        Out { first: *first, u, internal, speed, worst, external, balance: balance.as_deref_mut(), memory }
+        let Self { first, u, internal, speed, worst, external, forces, balance, memory } = self;
+        let (forces, balance) = (forces.as_deref_mut(), balance.as_deref_mut());
+        Out { first: *first, u, internal, speed, worst, external, forces, balance, memory }
     }
 
     /// Those of the first `blocks`, with so many internal variables, entries of `external` and numbers of `memory`, and the rest.
@@ -175,12 +188,14 @@ impl<'a> Out<'a> {
         let (internal, internal2) = self.internal.split_at_mut(internal);
         let (speed, speed2) = self.speed.split_at_mut(blocks);
         let (worst, worst2) = self.worst.split_at_mut(blocks.min(self.worst.len()));
+        let (forces, forces2) = self.forces.map(|forces| forces.split_at_mut(external)).unzip();
         let (external, external2) = self.external.split_at_mut(external);
         let (balance, balance2) = self.balance.map(|balance| balance.split_at_mut(blocks)).unzip();
         let (memory, memory2) = self.memory.split_at_mut(memory);
-        let left = Out { first, u, internal, speed, worst, external, balance, memory };
+        let left = Out { first, u, internal, speed, worst, external, forces, balance, memory };
         let (first, u, internal, speed, memory) = (second, u2, internal2, speed2, memory2);
-        (left, Out { first, u, internal, speed, worst: worst2, external: external2, balance: balance2, memory })
+        let (worst, external, forces, balance) = (worst2, external2, forces2, balance2);
+        (left, Out { first, u, internal, speed, worst, external, forces, balance, memory })
     }
 }
 
@@ -249,9 +264,10 @@ impl Scheme {
             Some(memory) => memory.parts(),
             None => (&mut [][..], None),
         };
-        let (external, memory) = (&mut outside.entries[..], &mut next.boundary[..]);
+        let (external, forces) = (&mut outside.entries[..], outside.forces.as_deref_mut());
+        let memory = &mut next.boundary[..];
         memory.copy_from_slice(&state.boundary);
-        let mut out = Out { first: 0, u, internal, speed, worst, external, balance, memory };
+        let mut out = Out { first: 0, u, internal, speed, worst, external, forces, balance, memory };
         let count = tiles.len();
         for phase in 0..*phases {
             let start = match &mut starts {

@@ -39,6 +39,8 @@ pub struct Arrays {
     pub between: Vec<F8>,
     /// Q at the nodes, [a][6].
     fitted: Vec<F8>,
+    /// Ticks spent on sources between sweeps.
+    pub ticks: u64,
 }
 
 impl Arrays {
@@ -56,6 +58,7 @@ impl Arrays {
             mean_stress: zeros(DEFORMATION),
             between: vec![F8::ZERO; transfer::factors(m, points, UNKNOWNS)],
             fitted: vec![F8::ZERO; UNKNOWNS * m * m],
+            ticks: 0,
         }
     }
 }

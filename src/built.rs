@@ -1,0 +1,29 @@
+//! The effects that the program was built with: all of them, but for `make proof`, which compares programs with and without one to show
+//! that what a scene does not ask for costs nothing. A program without an effect refuses scenes that ask for it.
+
+use crate::error::Error;
+
+/// The meter of forces.
+pub const FORCES: bool = cfg!(feature = "effect-forces");
+/// The balance of energy.
+pub const BALANCE: bool = cfg!(feature = "effect-balance");
+/// Sources.
+pub const SOURCES: bool = cfg!(feature = "effect-sources");
+/// Limiter, rescue and other corrections.
+pub const CORRECTIONS: bool = cfg!(feature = "effect-corrections");
+/// The control of the curl.
+pub const CURL: bool = cfg!(feature = "effect-curl");
+
+/// Refuses what is asked for and not there; `asked` has whether it is there, whether it is asked for, and its name.
+///
+/// # Errors
+/// The first that is missing.
+pub fn refuse(asked: &[(bool, bool, &str)]) -> Result<(), Error> {
+    match asked.iter().find(|(is_there, is_asked, _)| *is_asked && !is_there) {
+        None => Ok(()),
+        Some((_, _, name)) => {
+            let what = format!("the scene asks for {name}, and this program was built without");
+            Err(Error::input(what, "build it with all features, as `make build` does"))
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Force, impulse and work of the conditions of boundary groups through time.
+//!
+//! The steps meter the traction t* of the corrector's own fluxes at each boundary point. So the impulse of all groups and of sources is
+//! the change of momentum to rounding, whatever the step and the mesh. A force is a mean over the time since the row before, of the
+//! step where each step has its row: an ADER step has one t* at a point, and a Runge-Kutta step the mean over its stages.
+
+use super::{Column, Track};
+use crate::error::Error;
+use crate::mesh::Mesh;
+use crate::quantity::Seen;
+use crate::state::Received;
+
+/// What boundary groups give to the body: force (N/m, mean since the row before, 0 in the first row), impulse (N s/m) and work (J/m)
+/// since the start of the run; a run that starts from a snapshot with forces goes on from them.
+pub struct Forces {
+    groups: Vec<Group>,
+    /// Time of the row before, s.
+    time: f64,
+}
+
+/// A group that is followed.
+struct Group {
+    name: String,
+    /// Its number in the mesh.
+    number: usize,
+    /// What the body had received through it in the row before; none before the first.
+    before: Option<Received>,
+    /// The force of the row before, N/m.
+    force: [f64; 2],
+}
+
+impl Forces {
+    /// Of these groups, with their numbers in the mesh.
+    pub fn new(groups: Vec<(String, usize)>) -> Self {
+        let of = |(name, number)| Group { name, number, before: None, force: [0.0; 2] };
+        Self { groups: groups.into_iter().map(of).collect(), time: f64::NEG_INFINITY }
+    }
+}
+
+impl Track for Forces {
+    fn columns(&self) -> Vec<Column> {
+        let of = |group: &Group| {
+            let columns = [
+                ("force_1", "N/m"),
+                ("force_2", "N/m"),
+                ("impulse_1", "N s/m"),
+                ("impulse_2", "N s/m"),
+                ("work", "J/m"),
+            ];
+            columns.map(|(column, unit)| (format!("{}_{column}", group.name), unit))
+        };
+        self.groups.iter().flat_map(of).collect()
+    }
+
+    fn push(&mut self, seen: &Seen, row: &mut Vec<f64>) {
+        let elapsed = seen.state.time - self.time;
+        for group in &mut self.groups {
+            let now = seen.state.received.get(group.number).copied().unwrap_or_default();
+            if let Some(before) = group.before.filter(|_| elapsed > 0.0) {
+                group.force = [0, 1].map(|axis| (now.impulse[axis] - before.impulse[axis]) / elapsed);
+            }
+            group.before = Some(now);
+            row.extend(group.force.into_iter().chain(now.impulse).chain([now.work]));
+        }
+        self.time = seen.state.time;
+    }
+
+    fn moved(&mut self, mesh: &Mesh) -> Result<(), Error> {
+        // Another mesh may have its groups in another order.
+        for Group { name, number, .. } in &mut self.groups {
+            let found = mesh.edge_groups.iter().position(|known| known == name);
+            *number = found.ok_or_else(|| {
+                let what = format!("the new mesh has no group \"{name}\", whose force an output records");
+                Error::input(what, "give the boundary its old name in the new mesh")
+            })?;
+        }
+        Ok(())
+    }
+
+    fn wants_forces(&self) -> bool {
+        true
+    }
+}
