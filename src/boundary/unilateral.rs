@@ -1,0 +1,38 @@
+//! Rigid wall that the body may leave and reach.
+
+use super::surface::Surface;
+use super::{Boundary, Data, FacePoint, Moment, mean};
+use crate::riemann::{Trace, star};
+use crate::tensor::dot;
+
+/// A wall along the boundary of the initial configuration, a gap away. With T_N = t.N - z_p (v.N - v_w) of the averaged trace:
+/// T_N <= 0 and gap <= 0 is the wall, anything else the free surface; then gap <- gap - dt (v*.N - v_w). One decision for each face
+/// point and step, so that nothing chatters within a step.
+///
+/// The gap goes below 0 in the step in which it closes, by dt v at most, and keeps that: it is the true distance, so that what a body goes
+/// in at each impact does not add up. (With gap <- max(0, ..) it does.) A wall at rest does no work, whatever the gap: no rule for it makes
+/// energy.
+#[derive(Clone)]
+pub struct Unilateral {
+    /// The gap at the start, m.
+    pub gap: [f64; 1],
+    /// Speed v_w of the wall along the outward normal, m/s; none for a wall at rest.
+    pub speed: Option<Data>,
+    /// Coulomb's coefficient of friction.
+    pub friction: f64,
+}
+
+impl Boundary for Unilateral {
+    fn memory(&self) -> &[f64] {
+        &self.gap
+    }
+
+    fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, memory: &mut [f64]) -> [f64; 6] {
+        let (n, gap) = (at.normal, &mut memory[0]);
+        let wall = self.speed.as_ref().map_or(0.0, |speed| mean(speed, at.x, when));
+        let surface = Surface { normal: n, speed: [wall, 0.0], friction: self.friction };
+        let (state, _) = surface.unilateral(inside, at, *gap <= 0.0);
+        *gap -= when.dt * (dot(state.v, n) - wall);
+        star(state.v, state.t, n)
+    }
+}
