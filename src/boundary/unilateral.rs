@@ -1,7 +1,7 @@
 //! Rigid wall that the body may leave and reach.
 
 use super::surface::Surface;
-use super::{Boundary, Data, FacePoint, Moment, mean};
+use super::{Boundary, Data, FacePoint, Moment, mean, wall};
 use crate::riemann::{Trace, star};
 use crate::tensor::dot;
 
@@ -12,6 +12,10 @@ use crate::tensor::dot;
 /// The gap goes below 0 in the step in which it closes, by dt v at most, and keeps that: it is the true distance, so that what a body goes
 /// in at each impact does not add up. (With gap <- max(0, ..) it does.) A wall at rest does no work, whatever the gap: no rule for it makes
 /// energy.
+///
+/// Without friction a closed point has what the bilateral wall adds to the rows of F for the image behind it. A square (10 x 10 cells) thrown
+/// at 600 and 60 m/s against the wall loses 4.3 % of its energy without it (S3) and 3.4 % with it, with a curl of 47 and of 1.3 1/m; at 200 m/s it
+/// makes no difference of 1e-5. With friction it would take the shear that friction makes, and the run blows up.
 #[derive(Clone)]
 pub struct Unilateral {
     /// The gap at the start, m.
@@ -29,10 +33,15 @@ impl Boundary for Unilateral {
 
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, memory: &mut [f64]) -> [f64; 6] {
         let (n, gap) = (at.normal, &mut memory[0]);
-        let wall = self.speed.as_ref().map_or(0.0, |speed| mean(speed, at.x, when));
-        let surface = Surface { normal: n, speed: [wall, 0.0], friction: self.friction };
-        let (state, _) = surface.unilateral(inside, at, *gap <= 0.0);
-        *gap -= when.dt * (dot(state.v, n) - wall);
-        star(state.v, state.t, n)
+        let moving = self.speed.as_ref().map_or(0.0, |speed| mean(speed, at.x, when));
+        let surface = Surface { normal: n, speed: [moving, 0.0], friction: self.friction };
+        let (state, closed) = surface.unilateral(inside, at, *gap <= 0.0);
+        *gap -= when.dt * (dot(state.v, n) - moving);
+        let mut flux = star(state.v, state.t, n);
+        if closed && self.friction == 0.0 {
+            let add = wall::image(inside, at);
+            (0..4).for_each(|k| flux[k] += add[k]);
+        }
+        flux
     }
 }

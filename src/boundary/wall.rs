@@ -29,10 +29,16 @@ impl Boundary for Wall {
         let surface = Surface { normal: n, speed: [wall, 0.0], friction: 0.0 };
         let state = surface.held(inside, at, surface.traction(inside, at));
         let mut flux = star(state.v, state.t, n);
-        let add = Dual::incompatible(inside, &mirror(inside, n), n, inside.c[0], &at.medium);
-        (0..4).for_each(|k| flux[k] += IMAGE * add[k]);
+        let add = image(inside, at);
+        (0..4).for_each(|k| flux[k] += add[k]);
         flux
     }
+}
+
+/// What is added to the rows of F for the jump of F to its image.
+pub(super) fn image(inside: &Trace<f64>, at: &FacePoint) -> [f64; 4] {
+    let n = at.normal;
+    Dual::incompatible(inside, &mirror(inside, n), n, inside.c[0], &at.medium).map(|add| IMAGE * add)
 }
 
 /// The image of F and t behind the wall: M F M and M t with M = 1 - 2 N N^T, and t looked at with the same N.

@@ -32,7 +32,8 @@ fn a_pressure_pulse_is_the_gradient_of_its_pressure_and_is_0_outside() {
     let (x, t, h) = ([0.6, -0.1], 1.2, 1e-5);
     let b = PULSE.acceleration(x, t, [0.0; 2], 0);
     for i in 0..2 {
-        let beside = |by: f64| pressure([x[0] + if i == 0 { by } else { 0.0 }, x[1] + if i == 1 { by } else { 0.0 }], t);
+        let beside =
+            |by: f64| pressure([x[0] + if i == 0 { by } else { 0.0 }, x[1] + if i == 1 { by } else { 0.0 }], t);
         let expected = -(beside(h) - beside(-h)) / (2.0 * h) / 1.3;
         // Central differences: h^2 times the third derivative, some 1e-10 of 1e2, and rounding over h.
         assert!((b[i] - expected).abs() < 1e-7, "{b:?} {expected}");
