@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::registry::{
-    CONDITIONS, CONTROLS, FLUXES, Form, GRIDS, LAWS, LAYOUTS, LIMITERS, METHODS, OUTPUTS, Parameter, Preset,
-    QUANTITIES, SOLUTIONS, SOURCES, Value, Values, example,
+    CONDITIONS, CONTROLS, FLUXES, Form, GRIDS, LAWS, LAYOUTS, LIMITERS, METHODS, OUTPUTS, Parameter, QUANTITIES,
+    SOLUTIONS, SOURCES, Value, Values, example,
 };
 
 const SCENE: &str = r#"

@@ -187,7 +187,7 @@ proptest! {
         let shape = Shape::HalfPlane { point: [0, 1].map(|i| at.x[i] + gap * n[i]), normal: tensor::normalised(tilted.map(|n| -n)) };
         let conditions: [(&dyn Boundary, Vec<f64>); 2] = [
             // Without friction it has the flux of the bilateral wall.
-            (&wall(friction.max(1e-3)), vec![gap]),
+            (&wall(f64::max(friction, 1e-3)), vec![gap]),
             (&Obstacle { shape, velocity: None, friction }, vec![0.0; 2]),
         ];
         for (condition, mut memory) in conditions {
