@@ -4,8 +4,8 @@ use super::{Boundary, FacePoint, Moment};
 use crate::riemann::{Trace, star, tangent};
 use crate::tensor::dot;
 
-/// t* = -k u - c v* along the normal N and the tangent of the initial configuration, per area of the initial configuration, where u, the memory, is the
-/// displacement of the face point since the start: du/dt = v*.
+/// t* = -k u - c v* along the normal N and the tangent, both of the initial configuration, per area of it. u, the memory, is the displacement
+/// of the face point since the start: du/dt = v*.
 ///
 /// v* = v + theta (t* - t) / z_p has t* with the u of the middle of the step, u + dt v*/2, and is solved for v*. So a step takes
 /// k (u1^2 - u0^2)/2 + c v*^2 dt from the body exactly: with the energy of the springs, which counts as (negative) work of the outside, nothing

@@ -23,15 +23,8 @@ impl Source for Damping {
         if self.material.is_some_and(|only| only != material) {
             return [0.0; 2];
         }
-        // Not `clamp`: a share that is not a number shall not be seen as one.
-        let share = self.share.as_ref().map_or(1.0, |share| share(x, time));
-        let share = if share > 1.0 {
-            1.0
-        } else if share < 0.0 {
-            0.0
-        } else {
-            share
-        };
+        // A share that is not a number stays so.
+        let share = self.share.as_ref().map_or(1.0, |share| share(x, time)).clamp(0.0, 1.0);
         v.map(|v| -self.rate * share * v)
     }
 }

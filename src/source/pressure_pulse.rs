@@ -4,8 +4,8 @@ use super::Source;
 use std::f64::consts::PI;
 
 /// b = -grad p / rho0 of a pressure p = A (1 - q^2)^3 sin^2(pi s) within q = |X - X_c|/R < 1, 0 < s = (t - t_0)/D < 1, in the initial
-/// configuration. p is twice differentiable over the edge of the disc, b is once, and sin^2 starts and ends without a jump of its rate. The sum of the forces
-/// is 0 where the disc lies within the body.
+/// configuration. p is twice differentiable over the edge of the disc, b is once, and sin^2 starts and ends without a jump of its rate. The
+/// sum of the forces is 0 where the disc lies within the body.
 #[derive(Debug, Clone, Copy)]
 pub struct PressurePulse {
     /// A, Pa.

@@ -39,8 +39,8 @@ fn a_sponge_takes_a_wave_that_a_clamped_end_would_send_back() {
         energy.last().unwrap() / energy[0]
     };
     let (with, without) = (run(true), run(false));
-    // The amplitude falls by exp(-int alpha/2 dx/c) there and back, int alpha dx = 4 m/s, and the mesh takes a part as it does without: e^-8 = 3.4e-4 of the
-    // energy in all. A factor of 2 is for waves that are not short against the layer.
+    // The amplitude falls by exp(-int alpha/2 dx/c) there and back, int alpha dx = 4 m/s, and the mesh takes a part as it does without:
+    // e^-8 = 3.4e-4 of the energy in all. A factor of 2 is for waves that are not short against the layer.
     assert!(without > 0.7 && with / without < 2.0 * (-8.0_f64).exp(), "{with:e} {without:e}");
 }
 
