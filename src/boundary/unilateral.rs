@@ -10,8 +10,9 @@ use crate::tensor::dot;
 /// point and step, so that nothing chatters within a step.
 ///
 /// The gap goes below 0 in the step in which it closes, by dt v at most, and keeps that: it is the true distance, so that what a body goes
-/// in at each impact does not add up. (With gap <- max(0, ..) it does.) A wall at rest does no work, whatever the gap: no rule for it makes
-/// energy.
+/// in at each impact does not add up. (A bar of 1 m that flies between two walls at 1 mm/s, c = 1 m/s, 20 cells, goes 1e-5 m beyond them in
+/// 60 s; with gap <- max(0, ..) it is 3e-5 m, and more with each of the 25 impacts.) A wall at rest does no work, whatever the gap: no rule
+/// for it makes energy.
 ///
 /// Without friction a closed point has what the bilateral wall adds to the rows of F for the image behind it. A square (10 x 10 cells) thrown
 /// at 600 and 60 m/s against the wall loses 4.3 % of its energy without it (S3) and 3.4 % with it, with a curl of 47 and of 1.3 1/m; at 200 m/s it
