@@ -141,7 +141,7 @@ fn impact(n: usize, kind: &str, keys: &str) -> (f64, f64) {
         .method("ader-dgmpm")
         .degree(2)
         .end(0.23);
-    let run = Run::of(body);
+    let run = Run::with_row_every(5, body);
     let energy = run.ledger.column("total_energy");
     assert!(largest(&energy) <= energy[0] * (1.0 + 1e-13), "{kind} {n}: {:e}", largest(&energy) / energy[0] - 1.0);
     let (force, t) = (run.force(1), run.times());

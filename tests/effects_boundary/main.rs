@@ -16,17 +16,22 @@ use dgmpm::parts::problem::Problem;
 use runs::Table;
 use scenes::Body;
 
-/// A finished run, and its ledger of every step.
+/// A finished run, and its ledger.
 struct Run {
     problem: Problem,
     ledger: Table,
 }
 
 impl Run {
-    /// Runs a scene of this text.
+    /// Runs a scene of this text, with a row of the ledger for every step.
     fn of(body: Body) -> Self {
+        Self::with_row_every(1, body)
+    }
+
+    /// The same with fewer rows, each of which costs about a step.
+    fn with_row_every(steps: usize, body: Body) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let mut problem = body.ledger(1).problem(&[]);
+        let mut problem = body.ledger(steps).problem(&[]);
         let folder = Folder::new(folder.path());
         problem.run_in(&folder).unwrap();
         Self { problem, ledger: Table::read(&folder.ledger()) }
@@ -41,7 +46,7 @@ impl Run {
         self.ledger.column(["momentum_1", "momentum_2"][axis])
     }
 
-    /// Force on the body along an axis, by step: the change of momentum over time, N/m.
+    /// Force on the body along an axis, from row to row: the change of momentum over time, N/m.
     fn force(&self, axis: usize) -> Vec<f64> {
         let (p, t) = (self.momentum(axis), self.times());
         p.windows(2).zip(t.windows(2)).map(|(p, t)| (p[1] - p[0]) / (t[1] - t[0])).collect()
