@@ -117,6 +117,11 @@ impl Expression {
         self.program.iter().any(|op| matches!(op, Op::T))
     }
 
+    /// Whether x or y stands in it.
+    pub fn depends_on_place(&self) -> bool {
+        self.program.iter().any(|op| matches!(op, Op::X | Op::Y))
+    }
+
     /// The text that it was compiled from.
     pub fn source(&self) -> &str {
         &self.source

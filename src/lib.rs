@@ -125,7 +125,10 @@ pub use state::State;
 pub use step::{Control, Loss, Method, Motion, Relax, Scheme, Survey, Sweeps, Tableau, Totals, cfl};
 
 // What a crate may add: laws, fluxes, conditions, sources, corrections, observers.
-pub use boundary::{Absorbing, Boundary, Data, FacePoint, Free, Moment, TimeNode, Traction, Velocity, Wall};
+pub use boundary::{
+    Absorbing, Boundary, Data, FacePoint, Foundation, Free, Moment, Obstacle, Pressure, Shape, TimeNode, Traction,
+    Unilateral, Velocity, Wall,
+};
 pub use lane::{F8, Kernel, LANES, Lane, Lanes};
 pub use limiter::{Beside, Cell, CellLimiter, Limiter, Modes, MomentLimiter, Sensor, VertexLimiter};
 pub use material::{
@@ -133,7 +136,7 @@ pub use material::{
 };
 pub use observe::{Field, NewGrid, Observer, Point, Schedule, Solution, View};
 pub use riemann::{Acoustic, AcousticCurl, Dual, Impedance, Looks, Medium, Riemann, Rusanov, Trace, star};
-pub use source::{BodyForce, Source};
+pub use source::{BodyForce, Damping, PressurePulse, Source};
 pub use step::{Balance, Corrected, Correction, Flux, Law, Made, Notes, Rescue};
 
 // Exact solutions and errors.

@@ -9,7 +9,12 @@ pub struct Free;
 
 impl Boundary for Free {
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, _: &Moment, _: &mut [f64]) -> [f64; 6] {
-        let dv = at.characteristic(inside).solve(inside.t);
-        star([inside.v[0] - dv[0], inside.v[1] - dv[1]], [0.0; 2], at.normal)
+        star(velocity(inside, at), [0.0; 2], at.normal)
     }
+}
+
+/// v* of a free surface, m/s.
+pub(super) fn velocity(inside: &Trace<f64>, at: &FacePoint) -> [f64; 2] {
+    let dv = at.characteristic(inside).solve(inside.t);
+    [inside.v[0] - dv[0], inside.v[1] - dv[1]]
 }

@@ -3,14 +3,25 @@
 //! A new condition is one file with a type that implements [`Boundary`] and its entry in the registry.
 
 mod absorbing;
+mod foundation;
 mod free;
+mod obstacle;
+mod pressure;
+mod shape;
+mod surface;
 mod traction;
+mod unilateral;
 mod velocity;
 mod wall;
 
 pub use absorbing::Absorbing;
+pub use foundation::Foundation;
 pub use free::Free;
+pub use obstacle::Obstacle;
+pub use pressure::Pressure;
+pub use shape::Shape;
 pub use traction::Traction;
+pub use unilateral::Unilateral;
 pub use velocity::Velocity;
 pub use wall::Wall;
 

@@ -19,6 +19,11 @@ fn constant(x: f64) -> Data {
     Arc::new(move |_, _| x)
 }
 
+/// A state whose traction is that of a pressure on the current area.
+fn pressed(f: [f64; 4], p: f64, v: [f64; 2]) -> Trace<f64> {
+    Trace { t: tensor::times(tensor::cofactor(f), N).map(|area| -p * area), ..trace(f, v) }
+}
+
 /// Each condition with a state that satisfies it: the flux must then be that of the state itself.
 #[test]
 fn a_state_that_satisfies_the_condition_is_kept() {
@@ -33,6 +38,7 @@ fn a_state_that_satisfies_the_condition_is_kept() {
         ("traction", Arc::new(Traction { value: moving.t.map(constant) }), moving),
         ("velocity", Arc::new(Velocity { value: moving.v.map(constant) }), moving),
         ("absorbing", Arc::new(Absorbing), trace(rest, [0.0, 0.0])),
+        ("pressure", Arc::new(Pressure { value: constant(0.4) }), pressed(strained, 0.4, [0.1, -0.2])),
     ];
     for (name, condition, state) in cases {
         let (flux, own) = (condition.flux(&state, &AT, &NOW, &mut []), star(state.v, state.t, N));
@@ -71,6 +77,9 @@ fn no_condition_that_holds_an_edge_does_work_on_it_while_it_is_at_rest() {
     assert!(tensor::dot(t, tangential).abs() < 1e-15);
     assert!((tensor::dot(N, [wall[0] * N[0] + wall[1] * N[1], wall[2] * N[0] + wall[3] * N[1]])).abs() < 1e-15);
 }
+
+mod contact;
+mod springs;
 
 #[test]
 fn data_that_depends_on_time_is_averaged_over_the_time_nodes() {

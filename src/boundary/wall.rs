@@ -1,7 +1,8 @@
 //! Frictionless bilateral wall, moving or not; at rest it is the plane of symmetry.
 
+use super::surface::Surface;
 use super::{Boundary, Data, FacePoint, Moment, mean};
-use crate::riemann::{Dual, Trace, star, tangent};
+use crate::riemann::{Dual, Trace, star};
 use crate::tensor::dot;
 
 /// v*.N = v_w, t*.N = t.N - z_p (v.N - v_w), t*.T = 0, v*.T = v.T - theta t.T / z_p: the flux [`Dual`] against the mirror image of
@@ -23,17 +24,21 @@ impl Boundary for Wall {
     }
 
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, _: &mut [f64]) -> [f64; 6] {
-        let (n, t) = (at.normal, tangent(at.normal));
+        let n = at.normal;
         let wall = self.speed.as_ref().map_or(0.0, |speed| mean(speed, at.x, when));
-        // The wall pushes against v.N - v_w > 0, so that the traction along N falls.
-        let pressure = dot(inside.t, n) - at.impedance(inside) * (dot(inside.v, n) - wall);
-        let slip = dot(inside.v, t) - at.admittance(inside) * dot(inside.t, t);
-        let v = [0, 1].map(|i| wall * n[i] + slip * t[i]);
-        let mut flux = star(v, n.map(|x| pressure * x), n);
-        let add = Dual::incompatible(inside, &mirror(inside, n), n, inside.c[0], &at.medium);
-        (0..4).for_each(|k| flux[k] += IMAGE * add[k]);
+        let surface = Surface { normal: n, speed: [wall, 0.0], friction: 0.0 };
+        let state = surface.held(inside, at, surface.traction(inside, at));
+        let mut flux = star(state.v, state.t, n);
+        let add = image(inside, at);
+        (0..4).for_each(|k| flux[k] += add[k]);
         flux
     }
+}
+
+/// What is added to the rows of F for the jump of F to its image.
+pub(super) fn image(inside: &Trace<f64>, at: &FacePoint) -> [f64; 4] {
+    let n = at.normal;
+    Dual::incompatible(inside, &mirror(inside, n), n, inside.c[0], &at.medium).map(|add| IMAGE * add)
 }
 
 /// The image of F and t behind the wall: M F M and M t with M = 1 - 2 N N^T, and t looked at with the same N.

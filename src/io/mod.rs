@@ -3,7 +3,7 @@
 //! Between the steps of the pipeline everything travels in HDF5 ([`store`]): the mesh ([`mesh_file`]), the cloud
 //! ([`cloud_file`]), the matrices ([`operators_file`]) and the state at a time ([`snapshot`]). Meshes come from Gmsh
 //! ([`gmsh`]). For other programs there is an output model ([`grid`]) that knows nothing of a solver, and one writer per
-//! format: [`vtu`], [`pvd`], [`xdmf`], [`csv`].
+//! format: [`vtu`], [`pvd`], [`xdmf`], [`csv`]. Loads over time come from CSV too ([`LoadTable`]).
 //!
 //! A file appears under its name only when it is whole ([`pending`]); what is read is checked before it is used.
 
@@ -14,6 +14,7 @@ pub mod gmsh;
 pub mod grid;
 pub mod hash;
 pub mod hdf5;
+mod load_table;
 pub mod mesh_file;
 pub mod operators_file;
 pub mod pending;
@@ -24,6 +25,8 @@ pub mod snapshot;
 pub mod store;
 pub mod vtu;
 pub mod xdmf;
+
+pub use load_table::LoadTable;
 
 use crate::error::Result;
 use crate::mesh::Mesh;

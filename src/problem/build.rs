@@ -33,6 +33,7 @@ impl Scene {
             Source::File(path) => read_mesh(&self.existing("mesh.file", path)?)?,
         };
         let mesh = self.cut_mesh(mesh)?;
+        self.check_loads()?;
         self.check_exact_materials(&mesh)?;
         Ok(mesh)
     }
@@ -126,11 +127,7 @@ impl Scene {
     /// # Errors
     /// As [`Scheme::new`].
     pub fn build_scheme(&self, mesh: &Mesh, operators: Operators, kernel: Kernel) -> Result<Scheme> {
-        let condition = |group: &String| self.boundaries.iter().find(|b| b.group == *group).map(condition);
-        // `check_mesh` has refused groups without a condition; no face looks at that of a periodic group, and one that others name as
-        // their partner is free but for what acts between them.
-        let free = || Arc::new(boundary::Free) as Arc<dyn boundary::Boundary>;
-        let boundaries = mesh.edge_groups.iter().map(|group| condition(group).unwrap_or_else(free)).collect();
+        let boundaries = mesh.edge_groups.iter().map(|group| self.condition(group)).collect::<Result<_>>()?;
         let pairings = self.pairings(mesh);
         let rate = self.curl.values.number("alpha") * self.scheme.degree as f64;
         let curl = self.curl.build().relax.map(|relax| Control { relax, rate });
@@ -155,6 +152,15 @@ impl Scene {
         let (values, degree) = (&self.limiter.values, self.scheme.degree);
         let make = self.limiter.build().make.filter(|_| degree > 0);
         make.map(|make| make(values, degree)).into_iter().collect()
+    }
+
+    /// The condition of a group.
+    fn condition(&self, group: &str) -> Result<Arc<dyn boundary::Boundary>> {
+        match self.boundaries.iter().position(|boundary| boundary.group == group) {
+            Some(k) => Ok((self.boundaries[k].condition.build().make)(&self.values_of_boundary(k)?)),
+            // `check_mesh` has refused groups without a condition; no face looks at that of a periodic group.
+            None => Ok(Arc::new(boundary::Free)),
+        }
     }
 
     fn source(&self, source: &scene::Source) -> Arc<dyn source::Source> {
@@ -210,8 +216,4 @@ impl Scene {
             watch: self.watch.map(|scene::Watch { warn, stop }| WatchLimits { warn, stop }),
         })
     }
-}
-
-fn condition(boundary: &Boundary) -> Arc<dyn boundary::Boundary> {
-    (boundary.condition.build().make)(&boundary.condition.values)
 }

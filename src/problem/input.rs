@@ -34,6 +34,7 @@ pub fn write_input(problem: &Problem, files: &Files, folder: &Folder, certificat
     let Problem { scene, body, scheme, state, .. } = problem;
     mesh_file::write_mesh(&folder.mesh(), &body.mesh)?;
     write_later_grids(problem, folder)?;
+    scene.store_loads(folder)?;
     if let Some(snapshot) = &scene.initial.snapshot {
         copy(&scene.resolve(snapshot), &folder.root.join("initial.h5"))?;
     }

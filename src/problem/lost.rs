@@ -148,7 +148,7 @@ impl Case<'_> {
     fn is_driven(&self) -> bool {
         let still = |boundary: &Boundary| {
             let mut all = boundary.condition.expressions().flat_map(|(_, all)| all);
-            all.all(|expression| expression.constant() == Some(0.0))
+            all.all(|expression| expression.constant() == Some(0.0)) && boundary.condition.files().next().is_none()
         };
         !self.problem.scheme.sources.is_empty() || !self.problem.scene.boundaries.iter().all(still)
     }

@@ -28,6 +28,7 @@ mod grids;
 mod export;
 mod groups;
 mod input;
+mod loads;
 mod lost;
 mod moved;
 pub mod notices;

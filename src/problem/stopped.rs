@@ -62,6 +62,7 @@ impl Problem {
         folder.clear_results()?;
         let files = GridFiles::default();
         self.body.write(folder, &files)?;
+        self.scene.store_loads(folder)?;
         let path = observe::write(&self.scheme, &self.state, &files, &folder.snapshots())?;
         Snapshot::read(&path)?.write(&folder.root.join("initial.h5"))?;
         pending::write_text(&folder.scene(), &self.scene.portable_from("initial.h5"))

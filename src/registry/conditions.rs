@@ -1,7 +1,9 @@
 //! The conditions on groups of boundary edges, `[[boundary]] kind = ..`.
 
-use super::{ANY, Entry, Fault, Form, NOT_NEGATIVE, POSITIVE, Parameter, Preset, Table, Values};
-use crate::boundary::{Absorbing, Boundary, Free, Traction, Velocity, Wall};
+use super::{ANY, Entry, FINITE, Fault, Form, NOT_NEGATIVE, POSITIVE, Parameter, Preset, Table, Values};
+use crate::boundary::{
+    Absorbing, Boundary, Data, Foundation, Free, Obstacle, Pressure, Shape, Traction, Unilateral, Velocity, Wall,
+};
 use crate::contact::{Cohesive, Interaction, Paired, Sliding};
 use crate::expression::Expression;
 use std::sync::Arc;
@@ -33,23 +35,127 @@ impl Condition {
     }
 }
 
+const SPEED: Parameter =
+    Parameter::new("speed", "the speed of the wall", "m/s", Form::Expression, Preset::Constant(&[0.0]));
+
+const FRICTION: Parameter = Parameter::number("friction", "Coulomb's coefficient", "", NOT_NEGATIVE, 0.0);
+
+const VELOCITY: Parameter = Parameter::new(
+    "velocity",
+    "its velocity, which depends on t alone; it does not turn",
+    "m/s",
+    Form::Expressions(2),
+    Preset::Constant(&[0.0, 0.0]),
+);
+
+/// Of a table of loads.
+const TABLE: Preset = Preset::Absent("none: `value` has it");
+
+/// Whether expressions are the number 0.
+fn are_zero(all: &[Expression]) -> bool {
+    all.iter().all(|one| one.constant() == Some(0.0))
+}
+
+/// The speed of a wall; none of one at rest.
+fn speed(of: &Values) -> Option<Data> {
+    (!are_zero(of.expressions("speed"))).then(|| of.data("speed"))
+}
+
+fn obstacle(of: &Values, shape: Shape) -> Arc<dyn Boundary> {
+    let velocity = (!are_zero(of.expressions("velocity"))).then(|| of.pair("velocity"));
+    Arc::new(Obstacle { shape, velocity, friction: of.number("friction") })
+}
+
+fn moves_as_a_whole(of: &Values) -> Result<(), Fault> {
+    match of.expressions("velocity").iter().position(Expression::depends_on_place) {
+        None => Ok(()),
+        Some(k) => {
+            let remedy = "an obstacle is rigid and does not turn: give expressions of t alone";
+            Err(Fault::new(format!("velocity.{k}"), "the velocity of the obstacle depends on x or y", remedy))
+        }
+    }
+}
+
+fn polygon(corners: &[[f64; 2]]) -> Result<(), Fault> {
+    let next = |k: usize| corners[(k + 1) % corners.len()];
+    if let Some(k) = (0..corners.len()).find(|&k| corners[k] == next(k)) {
+        return Err(Fault::new(format!("corners.{k}"), "two corners in a row are the same", "remove one"));
+    }
+    if let Some([i, j]) = Shape::crossing(corners) {
+        let what = format!("the edges behind corner {i} and corner {j} cross or touch");
+        return Err(Fault::new(format!("corners.{j}"), what, "give the corners in their order along the edge"));
+    }
+    match Shape::twice_area(corners) == 0.0 {
+        true => Err(Fault::new("corners", "the polygon has no area", "give corners that are not on a line")),
+        false => Ok(()),
+    }
+}
+
 /// Every condition. What is said of an expression that is not finite begins with the line that describes its parameter.
 pub static CONDITIONS: Table<Condition> = Table::new(&[
     Entry {
         name: "wall",
         about: "rigid wall without friction, bilateral: it never opens; `speed` moves it along the outward normal",
-        parameters: &[Parameter::new(
-            "speed",
-            "the speed of the wall",
-            "m/s",
-            Form::Expression,
-            Preset::Constant(&[0.0]),
-        )],
+        parameters: &[SPEED],
+        check: ANY,
+        build: Condition::of(|of| Arc::new(Wall { speed: speed(of) })),
+    },
+    Entry {
+        name: "unilateral",
+        about: "rigid wall that the body may leave and reach, with gap and friction; `speed` moves it along the outward normal",
+        parameters: &[Parameter::number("gap", "the gap at the start", "m", NOT_NEGATIVE, 0.0), SPEED, FRICTION],
         check: ANY,
         build: Condition::of(|of| {
-            let at_rest = of.expression("speed").and_then(Expression::constant) == Some(0.0);
-            Arc::new(Wall { speed: (!at_rest).then(|| of.data("speed")) })
+            let (gap, friction) = ([of.number("gap")], of.number("friction"));
+            Arc::new(Unilateral { gap, speed: speed(of), friction })
         }),
+    },
+    Entry {
+        name: "half-plane",
+        about: "rigid half-plane in the way of the group, in the current configuration, with friction; it may move",
+        parameters: &[
+            Parameter::required("point", "a point of its edge at the start", "m", Form::Vector(FINITE)),
+            Parameter::required("normal", "the direction out of it, of any length above 0", "", Form::Vector(FINITE)),
+            VELOCITY,
+            FRICTION,
+        ],
+        check: |of| match of.vector("normal") == [0.0; 2] {
+            true => Err(Fault::new("normal", "the normal has no direction", "give for instance [0, 1]")),
+            false => moves_as_a_whole(of),
+        },
+        build: Condition::of(|of| {
+            let (point, n) = (of.vector("point"), of.vector("normal"));
+            let length = n[0].hypot(n[1]);
+            obstacle(of, Shape::HalfPlane { point, normal: n.map(|n| n / length) })
+        }),
+    },
+    Entry {
+        name: "disc",
+        about: "rigid disc in the way of the group, in the current configuration, with friction; it may move",
+        parameters: &[
+            Parameter::required("centre", "its centre at the start", "m", Form::Vector(FINITE)),
+            Parameter::required("radius", "its radius", "m", Form::Number(POSITIVE)),
+            VELOCITY,
+            FRICTION,
+        ],
+        check: moves_as_a_whole,
+        build: Condition::of(|of| {
+            obstacle(of, Shape::Disc { centre: of.vector("centre"), radius: of.number("radius") })
+        }),
+    },
+    Entry {
+        name: "polygon",
+        about: "rigid polygon in the way of the group, in the current configuration, with friction; it may move",
+        parameters: &[
+            Parameter::required("corners", "its corners at the start, either way around", "m", Form::Points(3)),
+            VELOCITY,
+            FRICTION,
+        ],
+        check: |of| {
+            polygon(of.points("corners"))?;
+            moves_as_a_whole(of)
+        },
+        build: Condition::of(|of| obstacle(of, Shape::Polygon { corners: of.points("corners").to_vec() })),
     },
     Entry {
         name: "symmetry",
@@ -69,16 +175,65 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
     Entry {
         name: "velocity",
         about: "prescribed velocity",
-        parameters: &[Parameter::required("value", "the velocity of the boundary", "m/s", Form::Expressions(2))],
+        parameters: &[
+            Parameter::new(
+                "value",
+                "the velocity of the boundary",
+                "m/s",
+                Form::Expressions(2),
+                Preset::Unless("file"),
+            ),
+            Parameter::new("file", "the velocity over time", "m/s", Form::LoadTable(2), TABLE),
+        ],
         check: ANY,
-        build: Condition::of(|of| Arc::new(Velocity { value: of.pair("value") })),
+        build: Condition::of(|of| Arc::new(Velocity { value: of.loads("value", "file") })),
     },
     Entry {
         name: "traction",
         about: "prescribed traction P N, per area of the initial configuration",
-        parameters: &[Parameter::required("value", "the traction on the boundary", "Pa", Form::Expressions(2))],
+        parameters: &[
+            Parameter::new("value", "the traction on the boundary", "Pa", Form::Expressions(2), Preset::Unless("file")),
+            Parameter::new("file", "the traction over time", "Pa", Form::LoadTable(2), TABLE),
+        ],
         check: ANY,
-        build: Condition::of(|of| Arc::new(Traction { value: of.pair("value") })),
+        build: Condition::of(|of| Arc::new(Traction { value: of.loads("value", "file") })),
+    },
+    Entry {
+        name: "pressure",
+        about: "pressure along the current normal: P N = -p cof(F) N",
+        parameters: &[
+            Parameter::new("value", "the pressure on the boundary", "Pa", Form::Expression, Preset::Unless("file")),
+            Parameter::new("file", "the pressure over time", "Pa", Form::LoadTable(1), TABLE),
+        ],
+        check: ANY,
+        build: Condition::of(|of| {
+            let [value] = of.loads("value", "file");
+            Arc::new(Pressure { value })
+        }),
+    },
+    Entry {
+        name: "foundation",
+        about: "springs and dampers along the initial normal and tangent: P N = -k u - c v",
+        parameters: &[
+            Parameter::required(
+                "stiffness",
+                "k along the normal and along the tangent, per area of the initial configuration",
+                "Pa/m",
+                Form::Vector(NOT_NEGATIVE),
+            ),
+            Parameter::new(
+                "damping",
+                "c along the normal and along the tangent, per area of the initial configuration",
+                "Pa s/m",
+                Form::Vector(NOT_NEGATIVE),
+                Preset::Absent("none"),
+            ),
+        ],
+        check: ANY,
+        build: Condition::of(|of| {
+            let damping = if of.has("damping") { of.vector("damping") } else { [0.0; 2] };
+            Arc::new(Foundation { stiffness: of.vector("stiffness"), damping })
+        }),
     },
     Entry {
         name: "absorbing",

@@ -30,6 +30,7 @@ pub mod sources;
 mod table;
 mod values;
 
+pub use crate::io::LoadTable;
 pub use crate::observe::Field;
 pub use crate::regrid::points::Policy;
 pub use conditions::CONDITIONS;
@@ -111,6 +112,14 @@ impl<B> Chosen<B> {
     }
 }
 
+impl<B> Chosen<B> {
+    /// The parameters that are tables of loads, each with the path of its file.
+    pub fn files(&self) -> impl Iterator<Item = (&'static Parameter, &str)> {
+        let all = self.entry.parameters.iter().filter(|parameter| matches!(parameter.form, Form::LoadTable(_)));
+        all.filter_map(|parameter| Some((parameter, self.values.maybe_text(parameter.name)?)))
+    }
+}
+
 impl<B> Clone for Chosen<B> {
     fn clone(&self) -> Self {
         Self { entry: self.entry, values: self.values.clone() }
@@ -150,11 +159,16 @@ pub fn defaults(parameters: &'static [Parameter], degree: usize) -> Values {
 }
 
 impl Preset {
+    /// Whether a scene has to give the parameter, or another one in its place.
+    pub fn is_asked(&self) -> bool {
+        matches!(self, Preset::Required | Preset::Unless(_))
+    }
+
     /// The value, for a degree in space; none where it has none.
     pub fn value(&self, degree: usize) -> Option<Value> {
         let number = crate::expression::Expression::number;
         match *self {
-            Preset::Required | Preset::Absent(_) => None,
+            Preset::Required | Preset::Unless(_) | Preset::Absent(_) => None,
             Preset::Number(value) => Some(Value::Number(value)),
             Preset::Integer(value) => Some(Value::Integer(value)),
             Preset::Boolean(value) => Some(Value::Boolean(value)),
@@ -171,7 +185,7 @@ impl Preset {
 pub fn example(parameters: &'static [Parameter]) -> Values {
     let mut values = defaults(parameters, 1);
     for (k, parameter) in parameters.iter().enumerate() {
-        if matches!(parameter.default, Preset::Required) {
+        if parameter.default.is_asked() {
             values.set(parameter.name, parameter.form.example(k));
         }
     }
@@ -193,6 +207,12 @@ impl Form {
             Form::Numbers(check) => Value::Numbers(vec![number(check)]),
             // Two parameters of an entry are never the same point.
             Form::Vector(check) => Value::Numbers(vec![number(check) * (k + 1) as f64; 2]),
+            // A convex polygon, counterclockwise.
+            Form::Points(least) => {
+                let angle = |k: usize| std::f64::consts::TAU * k as f64 / *least as f64;
+                Value::Points((0..*least).map(|k| [angle(k).cos(), angle(k).sin()]).collect())
+            }
+            Form::LoadTable(_) => Value::Text("load.csv".to_owned()),
             Form::Text => Value::Text("other".to_owned()),
             Form::Texts => Value::Texts(vec!["other".to_owned()]),
             Form::Expression => Value::Expression(expression()),

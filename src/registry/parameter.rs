@@ -51,6 +51,10 @@ pub enum Form {
     Boolean,
     /// A list of numbers.
     Numbers(Check),
+    /// A list of at least so many points.
+    Points(usize),
+    /// A CSV file with the columns t and so many values, beside the scene.
+    LoadTable(usize),
     /// Two numbers, one for each direction.
     Vector(Check),
     /// A text.
@@ -81,6 +85,8 @@ pub type Names = fn() -> Vec<&'static str>;
 pub enum Preset {
     /// The scene must give it.
     Required,
+    /// The scene must give it, or another parameter in its place; not both.
+    Unless(&'static str),
     /// It has no value then; in words what holds.
     Absent(&'static str),
     /// A number.
@@ -151,6 +157,8 @@ impl Form {
             Form::Boolean => "true or false".to_owned(),
             Form::Numbers(check) => format!("a list of numbers, each {}{of_unit}", check.range),
             Form::Vector(check) => format!("two numbers, each {}{of_unit}", check.range),
+            Form::Points(least) => format!("a list of at least {} points [x, y]{of_unit}", count(least)),
+            Form::LoadTable(n) => format!("a CSV file with the column t, in s, and {} more{of_unit}", count(n)),
             Form::Text => "a text".to_owned(),
             Form::Texts => "a text, or a list of texts".to_owned(),
             Form::Expression => format!("an expression of x, y, t{of_unit}"),

@@ -2,6 +2,7 @@
 
 use crate::boundary::Data;
 use crate::expression::Expression;
+use crate::io::LoadTable;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,10 +23,14 @@ pub enum Value {
     Texts(Vec<String>),
     /// Numbers.
     Numbers(Vec<f64>),
+    /// Points.
+    Points(Vec<[f64; 2]>),
     /// An expression of x, y, t.
     Expression(Expression),
     /// Expressions of x, y, t.
     Expressions(Vec<Expression>),
+    /// A table of loads that has been read from its file.
+    Loads(LoadTable),
     /// A table.
     Table(Values),
     /// Tables.
@@ -132,6 +137,27 @@ impl Values {
     /// Two numbers.
     pub fn vector(&self, name: &str) -> [f64; 2] {
         self.numbers(name).try_into().unwrap_or([f64::NAN; 2])
+    }
+
+    /// Points.
+    pub fn points(&self, name: &str) -> &[[f64; 2]] {
+        match self.get(name) {
+            Some(Value::Points(points)) => points,
+            _ => &[],
+        }
+    }
+
+    /// Data by the expressions of one parameter, or in its place by the columns of the table of loads of another.
+    pub fn loads<const N: usize>(&self, expressions: &str, file: &str) -> [Data; N] {
+        if let Some(Value::Loads(table)) = self.get(file) {
+            let table = Arc::new(table.clone());
+            return std::array::from_fn(|k| {
+                let table = table.clone();
+                Arc::new(move |_: [f64; 2], t| table.at(t, k)) as Data
+            });
+        }
+        let all = self.expressions(expressions);
+        std::array::from_fn(|k| data(all.get(k).unwrap_or(&Expression::number(f64::NAN))))
     }
 
     /// A table.

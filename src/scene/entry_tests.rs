@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::registry::{
-    CONDITIONS, CONTROLS, FLUXES, Form, GRIDS, LAWS, LAYOUTS, LIMITERS, METHODS, OUTPUTS, Parameter, Preset,
-    QUANTITIES, SOLUTIONS, SOURCES, Value, Values, example,
+    CONDITIONS, CONTROLS, FLUXES, Form, GRIDS, LAWS, LAYOUTS, LIMITERS, METHODS, OUTPUTS, Parameter, QUANTITIES,
+    SOLUTIONS, SOURCES, Value, Values, example,
 };
 
 const SCENE: &str = r#"
@@ -98,6 +98,9 @@ fn text(value: &Value) -> String {
         Value::Text(text) => format!("\"{text}\""),
         Value::Texts(texts) => format!("{texts:?}"),
         Value::Numbers(numbers) => format!("{numbers:?}"),
+        Value::Points(points) => format!("{points:?}"),
+        // A scene has the path of its file.
+        Value::Loads(_) => String::new(),
         Value::Expression(one) => format!("\"{}\"", one.source()),
         Value::Expressions(all) => format!("{:?}", all.iter().map(Expression::source).collect::<Vec<_>>()),
         Value::Table(table) => inline(table),
@@ -112,7 +115,7 @@ fn inline(table: &Values) -> String {
 
 /// The keys that a scene must give, after a comma.
 fn given(values: &Values, parameters: &[Parameter]) -> String {
-    let needed = parameters.iter().filter(|parameter| matches!(parameter.default, Preset::Required));
+    let needed = parameters.iter().filter(|parameter| parameter.default.is_asked());
     needed.filter_map(|parameter| Some(format!(",{}={}", parameter.name, text(values.get(parameter.name)?)))).collect()
 }
 

@@ -19,7 +19,18 @@ impl Reader<'_> {
 
     /// Adds the defaults of parameters that the table does not give; those that it must give are missing.
     pub(super) fn complete(&self, parameters: &[Parameter], values: &mut Values, degree: usize) -> Result<()> {
-        for parameter in parameters.iter().filter(|parameter| !self.has(parameter.name)) {
+        for parameter in parameters {
+            let other = if let Preset::Unless(other) = parameter.default { Some(other) } else { None };
+            let has_other = other.is_some_and(|other| self.has(other));
+            match (self.has(parameter.name), has_other) {
+                (true, true) => return Err(self.both(parameter.name, other.unwrap_or_default())),
+                (true, false) | (false, true) => continue,
+                (false, false) => {}
+            }
+            if let Some(other) = other {
+                let remedy = format!("{}: {}; or give `{other}`", parameter.about, parameter.words());
+                return Err(self.missing(parameter.name, &remedy));
+            }
             if let Preset::Required = parameter.default {
                 return Err(self.missing(parameter.name, &format!("{}: {}", parameter.about, parameter.words())));
             }
@@ -28,6 +39,11 @@ impl Reader<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Two keys of which one takes the place of the other.
+    fn both(&self, one: &str, other: &str) -> Error {
+        self.wrong(other, format!("{} has both `{one}` and `{other}`", self.title()), "keep one of them")
     }
 
     /// The entry that a key names, if the key is there.
@@ -102,7 +118,8 @@ impl Reader<'_> {
                 Some(numbers) if numbers.len() != 2 => return Err(self.count(key, 2, numbers.len())),
                 numbers => numbers.map(Value::Numbers),
             },
-            Form::Text => self.text(key)?.map(Value::Text),
+            Form::Points(least) => self.points(parameter, *least)?.map(Value::Points),
+            Form::Text | Form::LoadTable(_) => self.text(key)?.map(Value::Text),
             Form::Texts => self.texts(key)?.map(Value::Texts),
             Form::Expression => {
                 let Some(item) = self.item(key) else { return Ok(None) };

@@ -28,6 +28,11 @@ impl Scene {
         if self.initial.snapshot.is_some() {
             in_table(&mut document, "initial", |table| put(table, "snapshot", "initial.h5"));
         }
+        for (number, boundary) in self.boundaries.iter().enumerate() {
+            let entry = document.get_mut("boundary").and_then(|list| list.get_mut(number));
+            let Some(table) = entry.and_then(Item::as_table_like_mut) else { continue };
+            boundary.condition.files().for_each(|(key, _)| put(table, key.name, &Self::stored_loads(number, key.name)));
+        }
         for (rule, regrid) in self.regrids.iter().enumerate() {
             let entry = document.get_mut("regrid").and_then(|list| list.get_mut(rule));
             let Some(table) = entry.and_then(Item::as_table_like_mut) else { continue };
@@ -39,6 +44,11 @@ impl Scene {
             }
         }
         document.to_string()
+    }
+
+    /// The file of a run folder that has the table of loads of a condition.
+    pub(crate) fn stored_loads(number: usize, key: &str) -> String {
+        format!("boundary_{number}_{key}.csv")
     }
 
     /// The text of a run that goes on from a snapshot, on the mesh and cloud beside it.

@@ -255,7 +255,6 @@ fn disagree(a: &Boundary, b: &Boundary) -> bool {
 }
 
 fn boundary(table: &mut Reader, degree: usize) -> Result<Boundary> {
-    table.later(&["gap", "friction"]);
     let [group, kind] = [&tables::BOUNDARY[..1], &tables::BOUNDARY[1..]];
     let mut named = table.values(group)?;
     let entry = table.entry(&kind[0], &CONDITIONS)?;

@@ -134,6 +134,21 @@ impl<'a> Reader<'a> {
         Ok(Some(numbers))
     }
 
+    /// A list of points.
+    pub(super) fn points(&mut self, parameter: &Parameter, least: usize) -> Result<Option<Vec<[f64; 2]>>> {
+        let key = parameter.name;
+        let Some(item) = self.item(key) else { return Ok(None) };
+        let list = item.as_array().filter(|list| list.len() >= least);
+        let list = list.ok_or_else(|| self.not(key, &parameter.words(), item))?;
+        let mut points = Vec::with_capacity(list.len());
+        for (i, value) in list.iter().enumerate() {
+            let both = value.as_array().filter(|both| both.len() == 2);
+            let both = both.and_then(|both| Some([number_of(both.get(0)?)?, number_of(both.get(1)?)?]));
+            points.push(both.ok_or_else(|| self.not_entry(key, i, "a point, as in [0.5, 1.0]", value))?);
+        }
+        Ok(Some(points))
+    }
+
     /// One of some names; the names of `later` are known but not built yet.
     pub(super) fn name(&mut self, key: &'static str, names: &[&'static str], later: &[&str]) -> Result<Option<String>> {
         let Some(item) = self.item(key) else { return Ok(None) };

@@ -137,6 +137,7 @@ fn list(all: &mut Vec<String>, parameter: &Parameter, above: &str) {
     let unit = if unit.is_empty() { String::new() } else { format!(", {unit}") };
     let default = match default {
         Preset::Required => String::new(),
+        Preset::Unless(other) => format!("; or `{other}`"),
         default => format!("; default {}", words(default)),
     };
     all.push(format!("`{name}`: {about} ({}{unit}{default})", values(form)));
@@ -168,7 +169,7 @@ fn code(texts: &[&str]) -> String {
 
 fn words(default: &Preset) -> String {
     match default {
-        Preset::Required => String::new(),
+        Preset::Required | Preset::Unless(_) => String::new(),
         Preset::Absent(words) | Preset::ByDegree(words, _) => (*words).to_owned(),
         Preset::Number(value) => value.to_string(),
         Preset::Integer(value) => value.to_string(),

@@ -3,6 +3,12 @@
 //! A new source is one file with a type that implements [`Source`] and its entry in the registry. Without a
 //! source nothing is evaluated and nothing stored.
 
+mod damping;
+mod pressure_pulse;
+
+pub use damping::Damping;
+pub use pressure_pulse::PressurePulse;
+
 use crate::boundary::Data;
 
 /// A source rho0 b of momentum.
@@ -33,3 +39,6 @@ impl Source for BodyForce {
         [(self.value[0])(x, time), (self.value[1])(x, time)]
     }
 }
+
+#[cfg(test)]
+mod tests;

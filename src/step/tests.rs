@@ -87,7 +87,9 @@ pub(super) fn state(mesh: &Mesh, scheme: &Scheme, u: impl Fn([f64; 2], usize) ->
             u(x, cell * n + a).into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
         }
     }
-    State::pack(&scheme.operators.blocks, n, 6, &cells)
+    let mut state = State::pack(&scheme.operators.blocks, n, 6, &cells);
+    scheme.set_boundary_memory(&mut state, &[]);
+    state
 }
 
 pub(super) fn unpacked(scheme: &Scheme, state: &State) -> Vec<f64> {

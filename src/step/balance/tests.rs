@@ -1,7 +1,9 @@
 //! What the balance holds: its entries close; in the limit of small steps jumps explain what is lost; it changes no bit of the
 //! run.
 use super::*;
-use crate::boundary::{Absorbing, Boundary, Data, Free, Traction, Velocity, Wall};
+use crate::boundary::{
+    Absorbing, Boundary, Data, Foundation, Free, Obstacle, Pressure, Shape, Traction, Unilateral, Velocity, Wall,
+};
 use crate::material::LinearElastic;
 use crate::mesh::Mesh;
 use crate::riemann::{Acoustic, AcousticCurl, Rusanov};
@@ -21,13 +23,21 @@ fn data(f: fn([f64; 2], f64) -> f64) -> Data {
 }
 
 /// Every condition, with its name; each does work or dissipates in its own way.
-const CONDITIONS: [(&str, Condition); 6] = [
+const CONDITIONS: [(&str, Condition); 11] = [
     ("wall", wall),
     ("moving wall", || Arc::new(Wall { speed: Some(data(|x, t| 0.1 * x[1] + t)) })),
     ("free", || Arc::new(Free)),
     ("traction", || Arc::new(Traction { value: [data(|x, t| 0.1 + x[0] * t), data(|_, _| -0.2)] })),
     ("velocity", || Arc::new(Velocity { value: [data(|x, _| 0.1 * x[1]), data(|_, t| 0.3 - t)] })),
     ("absorbing", || Arc::new(Absorbing)),
+    ("wall that lets go", || Arc::new(Unilateral { gap: [0.0], speed: Some(data(|_, _| 0.02)), friction: 0.0 })),
+    ("wall with friction", || Arc::new(Unilateral { gap: [0.0], speed: None, friction: 0.2 })),
+    ("disc in the way", || {
+        let shape = Shape::Disc { centre: [0.5, -8.9], radius: 9.0 };
+        Arc::new(Obstacle { shape, velocity: Some([data(|_, _| 0.1), data(|_, t| t)]), friction: 0.1 })
+    }),
+    ("pressure", || Arc::new(Pressure { value: data(|x, t| 0.1 + x[0] * t) })),
+    ("foundation", || Arc::new(Foundation { stiffness: [0.5, 0.2], damping: [0.1, 0.3] })),
 ];
 
 /// [`wavy`] with jumps between cells and curl within them.

@@ -1,0 +1,43 @@
+//! A rigid obstacle in the current configuration.
+
+use super::shape::Shape;
+use super::surface::Surface;
+use super::{Boundary, Data, FacePoint, Moment, mean};
+use crate::riemann::{Trace, current_normal, star};
+use crate::tensor::dot;
+
+/// A rigid obstacle that moves without turning, with the velocity w. Each point of the boundary keeps r, how far it has moved relative
+/// to the obstacle: dr/dt = v* - w, 0 at the start. It is at X + r in the axes of the obstacle, whose distance there is the gap, with the
+/// normal -n out of the obstacle. T_N = t.n - z_p (v - w).n <= 0 and gap <= 0 is contact: v*.n = w.n, t* = T_N n without friction,
+/// per area of the initial configuration; anything else is the free surface.
+///
+/// The gap is the true distance: a body goes in by dt v at most when it closes, that stays while they touch, and does not add up. A step
+/// along a curved obstacle opens the gap by (dt slip)^2 / (2 radius), so that now and then a step is free; a
+/// correction of the position or of w would make energy. An obstacle at rest does no work but that of friction.
+#[derive(Clone)]
+pub struct Obstacle {
+    /// What it is, where it stands at the start.
+    pub shape: Shape,
+    /// Its velocity w, m/s, which depends on time alone; none for an obstacle at rest.
+    pub velocity: Option<[Data; 2]>,
+    /// Coulomb's coefficient of friction.
+    pub friction: f64,
+}
+
+impl Boundary for Obstacle {
+    fn memory(&self) -> &[f64] {
+        &[0.0; 2]
+    }
+
+    fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, memory: &mut [f64]) -> [f64; 6] {
+        let w = self.velocity.as_ref().map_or([0.0; 2], |both| [0, 1].map(|i| mean(&both[i], at.x, when)));
+        let (gap, out) = self.shape.distance([at.x[0] + memory[0], at.x[1] + memory[1]]);
+        let n = out.map(|out| -out);
+        let surface = Surface { normal: n, speed: [dot(w, n), n[0] * w[1] - n[1] * w[0]], friction: self.friction };
+        // The far side of a thin body may lie within the obstacle too: it does not look at it.
+        let looks = || dot(current_normal(inside.f, inside.f, at.normal), n) > 0.0;
+        let (state, _) = surface.unilateral(inside, at, gap <= 0.0 && looks());
+        (0..2).for_each(|i| memory[i] += when.dt * (state.v[i] - w[i]));
+        star(state.v, state.t, at.normal)
+    }
+}
