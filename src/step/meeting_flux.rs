@@ -2,7 +2,8 @@
 
 use super::across::Traces;
 use super::block::Block;
-use super::meetings::{Meetings, Point, Segment};
+use super::meetings::Meetings;
+use super::segments::{Point, Segment};
 use crate::contact::{Meeting, Pairs, Side};
 use crate::lane::F8;
 use crate::mesh::FACES;

@@ -42,6 +42,7 @@ mod rotation;
 mod runge_kutta;
 mod schedule;
 mod scheme;
+mod segments;
 mod shape;
 mod sources;
 mod stage;
