@@ -148,7 +148,7 @@ const BAD: &[Row] = &[
     ),
     ("\"neo-hookean\"", "\"neohook\"", 8, 7, &["unknown `law` \"neohook\"", "\"neo-hookean\""]),
     ("\"paper\"", "\"papers\"", 5, 10, &["did you mean `paper`", "\"jitter\""]),
-    ("\"wall\"", "\"contact\"", 16, 8, &["`kind` = \"contact\" is not built yet", "\"absorbing\""]),
+    ("\"wall\"", "\"contct\"", 16, 8, &["did you mean `contact`", "\"absorbing\""]),
     ("\"wall\"", "\"wal\"", 16, 8, &["did you mean `wall`", "\"clamped\""]),
     ("\"lcf\"", "\"auto\"", 31, 11, &["not built yet"]),
     ("[\"velocity\"]", "[\"velocty\"]", 48, 11, &["did you mean `velocity`", "\"von_mises\""]),

@@ -8,6 +8,9 @@ use crate::contact::{Cohesive, Interaction, Paired, Sliding};
 use crate::expression::Expression;
 use std::sync::Arc;
 
+/// Makes what acts between faces.
+pub type MakeInteraction = fn(&Values) -> Arc<dyn Interaction>;
+
 /// What there is to know of a condition.
 pub struct Condition {
     /// Makes it from its parameters.
@@ -16,7 +19,7 @@ pub struct Condition {
     /// each other.
     pub partner: Option<&'static str>,
     /// Makes what acts between the faces of the group and those of its partner (or of the group itself).
-    pub interaction: Option<fn(&Values) -> Arc<dyn Interaction>>,
+    pub interaction: Option<MakeInteraction>,
 }
 
 impl Condition {
@@ -28,7 +31,7 @@ impl Condition {
     /// What acts between faces.
     const fn between(
         make: fn(&Values) -> Arc<dyn Boundary>,
-        interaction: fn(&Values) -> Arc<dyn Interaction>,
+        interaction: MakeInteraction,
         partner: Option<&'static str>,
     ) -> Self {
         Self { make, partner, interaction: Some(interaction) }

@@ -145,7 +145,7 @@ pub(super) const EXACT: &[Parameter] = &[needed("kind", "the solution", "", Form
 
 pub(super) const BOUNDARY: &[Parameter] = &[
     needed("group", "the group of edges in the mesh, such as \"left\"", "", Form::Text),
-    needed("kind", "the condition", "", Form::Name(|| CONDITIONS.names(), &["contact"])),
+    needed("kind", "the condition", "", Form::Name(|| CONDITIONS.names(), &[])),
 ];
 
 pub(super) const SOURCE: &[Parameter] = &[

@@ -231,11 +231,12 @@ impl Meetings {
 
     /// Whether faces may have come so near since the last search that new pairs meet.
     fn has_moved(&self, contacts: &Contacts) -> bool {
-        let far = |((face, now), then): ((&Face, &[[f64; 2]; 2]), &[[f64; 2]; 2])| {
+        let far = |(face, then): (usize, &[[f64; 2]; 2])| {
+            let now = &self.ends[face];
             let moved = |k: usize| (now[k][0] - then[k][0]).hypot(now[k][1] - then[k][1]);
-            moved(0).max(moved(1)) > 0.5 * REACH * face.h
+            moved(0).max(moved(1)) > 0.5 * REACH * contacts.faces[face].h
         };
-        self.found_at.is_empty() || contacts.faces.iter().zip(&self.ends).zip(&self.found_at).any(far)
+        self.found_at.is_empty() || self.found_at.iter().enumerate().any(far)
     }
 
     /// Finds the pairs that may meet before [`Meetings::has_moved`]: those whose boxes, widened by a cell, overlap.
