@@ -112,6 +112,7 @@ fn discs_that_meet_obliquely_keep_momentum_and_never_gain_energy() {
         ("runge_kutta", &["scheme.method=rk-dgfem"]),
         ("cubic", &["scheme.degree=3"]),
         ("friction", &["boundary.0.friction=0.5"]),
+        ("new_grid", &["regrid=[{at=[1.5e-2],refine=2}]"]),
     ] {
         let outcome = outcome(&format!("discs_{name}"), &discs(&format!("discs_{name}"), 4), sets);
         // Of each disc: pi 1000 kg/m at 5 m/s.
