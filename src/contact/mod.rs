@@ -13,7 +13,8 @@ use crate::riemann::Trace;
 use crate::tensor::dot;
 use std::sync::Arc;
 
-/// What one side shows at a point of contact. Tractions and impedances count per current length.
+/// What one side shows at a point of contact. Tractions and impedances count per current length, at the sides of
+/// a cut ([`Pairs::Initial`]) per initial length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Side {
     /// Velocity, m/s.
@@ -90,6 +91,6 @@ pub trait Interaction: Send + Sync {
         &[]
     }
 
-    /// The traction on the first side per current length, Pa.
+    /// The traction on the first side per current length, for [`Pairs::Initial`] per initial length, Pa.
     fn traction(&self, at: &Meeting, memory: &mut [f64]) -> [f64; 2];
 }

@@ -4,7 +4,7 @@ use super::across::Traces;
 use super::block::Block;
 use super::meetings::Meetings;
 use super::segments::{Point, Segment};
-use crate::contact::{Meeting, Pairs, Side};
+use crate::contact::{Meeting, Side};
 use crate::lane::F8;
 use crate::mesh::FACES;
 use crate::riemann::{Trace, star};
@@ -41,11 +41,10 @@ impl Block<'_> {
         for &(segment, side) in met_by {
             let segment = &met.meetings.segments[segment];
             let law = contacts.law(segment.pairing);
-            // The points of a cut are those of the faces: each has its own memory, and none acts on another.
-            let is_cut = law.pairs() == Pairs::Initial;
+            // The points of a cut are those of the faces: `share` is 0 but at one, whose memory this is.
             for at in &segment.points[..line.m] {
                 let share = at.values[side][point];
-                if share == 0.0 || (is_cut && share < 0.5) {
+                if share == 0.0 {
                     continue;
                 }
                 let sides = [0, 1].map(|k| self.side(segment, at, k, met.traces, own.len()));

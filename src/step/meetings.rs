@@ -12,7 +12,7 @@
 //! matrix W_i of the whole face, the face points take no more energy than the points of the segment lose.
 
 use super::Scheme;
-use super::segments::{Chord, Face, MOST, REACH, SHORTEST, Segment, along, on_face, shared};
+use super::segments::{Chord, Face, MOST, REACH, SHORTEST, Segment, along, on_face, shared, whole};
 use crate::contact::{Interaction, Pairs};
 use crate::lane::LANES;
 use crate::mesh::{FACES, map};
@@ -189,10 +189,12 @@ impl Meetings {
         for &(pairing, faces) in &self.candidates {
             let chords = faces.map(|face| Chord::new(&contacts.faces[face], self.ends[face]));
             let points = faces.map(|face| &self.points[face]);
-            let Some(mut segment) = shared(&chords, points, &line.basis) else { continue };
             let h = contacts.faces[faces[0]].h.min(contacts.faces[faces[1]].h);
-            let cut = contacts.law(pairing).pairs() == Pairs::Initial;
-            if cut || segment.is_near(line.m, h) {
+            let segment = match contacts.law(pairing).pairs() {
+                Pairs::Initial => Some(whole(faces.map(|face| &contacts.faces[face]), &chords, points, &line.basis)),
+                Pairs::Current => shared(&chords, points, &line.basis).filter(|found| found.is_near(line.m, h)),
+            };
+            if let Some(mut segment) = segment {
                 (segment.pairing, segment.faces) = (pairing, faces);
                 (0..2).for_each(|side| self.of_face[faces[side]].push((self.segments.len(), side)));
                 self.segments.push(segment);

@@ -70,11 +70,11 @@ pub(super) fn on_face(face: usize, s: f64) -> [f64; 2] {
 /// A Gauss point of a segment.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Point {
-    /// w_g, its share of the current length, m.
+    /// w_g, its share of the current length (for the sides of a cut of the initial one), m.
     pub weight: f64,
     /// (x_2 - x_1).n, m.
     pub gap: f64,
-    /// Current over initial length of both sides.
+    /// The length that w_g counts over the initial one, of both sides.
     pub stretch: [f64; 2],
     /// l_i(s_g) on both sides.
     pub values: [[f64; MOST]; 2],
@@ -178,6 +178,35 @@ pub(super) fn shared(chords: &[Chord; 2], points: [&[[f64; 2]; MOST]; 2], basis:
         out.gap = dot([at[1][0] - at[0][0], at[1][1] - at[0][1]], normal);
     }
     Some(out)
+}
+
+/// The two sides of an edge of a cut: each point of the one faces that of the other at the same place in the initial configuration,
+/// wherever both are now. Lengths are those of the initial configuration.
+pub(super) fn whole(
+    faces: [&Face; 2],
+    chords: &[Chord; 2],
+    points: [&[[f64; 2]; MOST]; 2],
+    basis: &Lagrange,
+) -> Segment {
+    let [a, b] = chords;
+    let mean = [a.direction[0] - b.direction[0], a.direction[1] - b.direction[1]];
+    let size = mean[0].hypot(mean[1]);
+    // Sides that have turned onto each other have no mean direction.
+    let axis = if size > SHORTEST { mean.map(|x| x / size) } else { a.direction };
+    let normal = tangent(axis).map(|x| -x);
+    let mut out = Segment { pairing: 0, faces: [0; 2], normal, points: [Point::default(); MOST] };
+    let far = |end: usize| {
+        let (x, y) = (faces[0].ends[0], faces[1].ends[end]);
+        (x[0] - y[0]).hypot(x[1] - y[1])
+    };
+    let flip = far(1) < far(0);
+    for (i, (out, weight)) in out.points.iter_mut().zip(&basis.weights).enumerate() {
+        let j = if flip { basis.len() - 1 - i } else { i };
+        (out.values[0][i], out.values[1][j]) = (1.0, 1.0);
+        (out.weight, out.stretch) = (a.length * weight, [1.0; 2]);
+        out.gap = dot([points[1][j][0] - points[0][i][0], points[1][j][1] - points[0][i][1]], normal);
+    }
+    out
 }
 
 impl Segment {
