@@ -3,14 +3,15 @@
 use super::args::SceneArgs;
 use super::interrupt::{self, INTERRUPT};
 use super::output::RunArgs;
-use super::print::{say, warn};
+use super::print::{note, say, warn};
 use super::progress::Progress;
 use super::report::report;
 use super::{summary, threads};
 use crate::error::Result;
-use crate::problem::{Files, Problem, Setup, Store, check_run, write_input};
+use crate::format::count;
+use crate::problem::{Files, Problem, Setup, Store, check_folder, check_run, write_input};
 use crate::run::Folder;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Makes and runs it; `operators` is used if it was built from the same input.
 pub fn run(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &RunArgs) -> Result<()> {
@@ -26,6 +27,12 @@ pub fn run(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &Run
     scene.settings()?;
     let body = files.body(&scene)?;
     check_run(&scene, &body, operators)?;
+    check_folder((&scene, &body), files, operators, &folder)?;
+    let _lock = folder.lock()?;
+    // Another run may have begun and ended in the meantime.
+    if !run.force {
+        folder.refuse_results()?;
+    }
     let own = folder.operators();
     let look: Vec<&Path> = operators.into_iter().chain([own.as_path()]).collect();
     let problem = Setup::of(&scene).kernel(kernel).store(Store { look: &look, write: &own }).build_on(body)?;
@@ -34,15 +41,23 @@ pub fn run(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &Run
     // Quantities that the start of the run has not.
     problem.gauge()?;
     say(&problem.origin);
-    folder.clear_results()?;
+    kept(&folder.clear_results()?);
     write_input(&problem, files, &folder, certificates)?;
     solve(problem, &folder)
+}
+
+/// Names what stays of the files in the folders of results.
+fn kept(files: &[PathBuf]) {
+    if let Some(first) = files.first() {
+        let count = count(files.len(), "file");
+        note(format!("{count} that dgmpm has not made, such as {}: kept", first.display()));
+    }
 }
 
 /// Steps to the end, and says what came of it.
 fn solve(mut problem: Problem, folder: &Folder) -> Result<()> {
     interrupt::listen();
-    let progress = Box::new(Progress::new(problem.settings.end));
+    let progress = Box::new(Progress::new([problem.state.time, problem.settings.end]));
     let (_, result) = problem.record(folder, vec![progress], &INTERRUPT, summary::print);
     say(format!("results in {}", folder.root.display()));
     result

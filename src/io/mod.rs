@@ -5,7 +5,8 @@
 //! ([`gmsh`]). For other programs there is an output model ([`grid`]) that knows nothing of a solver, and one writer per
 //! format: [`vtu`], [`pvd`], [`xdmf`], [`csv`]. Loads over time come from CSV too ([`LoadTable`]).
 //!
-//! A file appears under its name only when it is whole ([`pending`]); what is read is checked before it is used.
+//! A file appears under its name only when it is whole ([`pending`]); what is read is checked before it is used. The folder of a run has
+//! a list of the files that the program has made there ([`own`]).
 
 mod certificates;
 pub mod cloud_file;
@@ -17,6 +18,7 @@ pub mod hdf5;
 mod load_table;
 pub mod mesh_file;
 pub mod operators_file;
+pub mod own;
 pub mod pending;
 pub mod points;
 pub mod pvd;
@@ -24,6 +26,7 @@ pub mod seal;
 pub mod snapshot;
 pub mod store;
 pub mod vtu;
+pub mod words;
 pub mod xdmf;
 
 pub use load_table::LoadTable;

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::own;
 use crate::error::{Error, Result};
 
 /// A file under a temporary name in the folder of its target. [`Pending::commit`] renames it to the target; without a
@@ -29,6 +30,7 @@ impl Pending {
         if let Some(folder) = target.parent().filter(|f| !f.as_os_str().is_empty()) {
             fs::create_dir_all(folder).map_err(|e| Error::output(folder, e))?;
         }
+        own::note(target)?;
         let mut part = name.to_owned();
         part.push(format!(".{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
         Ok(Self { target: target.to_owned(), temporary: target.with_file_name(part) })
@@ -47,6 +49,36 @@ impl Pending {
     /// Renames the file to its target and replaces a file of that name.
     pub fn commit(self) -> Result<()> {
         fs::rename(&self.temporary, &self.target).map_err(|e| Error::output(&self.target, e))
+    }
+
+    /// The same, once the disk has the bytes: after a power cut there is the old file or the new one.
+    pub fn commit_to_disk(self) -> Result<()> {
+        let fail = |e: std::io::Error| Error::output(&self.target, e);
+        fs::File::open(&self.temporary).and_then(|file| file.sync_all()).map_err(fail)?;
+        let folder = self.target.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
+        self.commit()?;
+        // The name, too. A system that cannot sync folders does so by itself.
+        let _ = fs::File::open(folder).and_then(|folder| folder.sync_all());
+        Ok(())
+    }
+}
+
+/// Whether a file name is that of a file that was being written when its program was killed: `name.pid-count.part`; its target.
+pub fn target_of_part(name: &str) -> Option<&str> {
+    let (target, number) = name.strip_suffix(".part")?.rsplit_once('.')?;
+    let (process, count) = number.split_once('-')?;
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
+    (is_number(process) && is_number(count)).then_some(target)
+}
+
+/// Refuses a folder that is no longer there: a run does not make its folder anew once it was removed.
+///
+/// # Errors
+/// An output that cannot be written.
+pub fn check_folder(folder: &Path) -> Result<()> {
+    match folder.is_dir() {
+        true => Ok(()),
+        false => Err(Error::output(folder, "the folder was removed during the run")),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{NewGrid, Observer, Schedule, View};
 use crate::error::Error;
+use crate::io::pending;
 use crate::io::snapshot::{self, GridFiles, Snapshot};
 use crate::state::{State, UNKNOWNS};
 use crate::step::Scheme;
@@ -27,6 +28,7 @@ impl Observer for Snapshots {
     }
 
     fn observe(&mut self, view: &View) -> Result<(), Error> {
+        pending::check_folder(&self.folder)?;
         let Snapshot { corrected, rescued, .. } = treated(view);
         let path = snapshot::path(&self.folder, view.state.step);
         Snapshot { corrected, rescued, grid: self.grid.clone(), ..take(view.scheme, view.state) }.write(&path)

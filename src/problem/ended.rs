@@ -3,6 +3,7 @@
 use super::Problem;
 use super::lost::{Case, kept};
 use crate::error::{Error, Result};
+use crate::io::pending;
 use crate::observe;
 use crate::run::{Folder, Report, Stop};
 use crate::step::EnergyMade;
@@ -30,7 +31,8 @@ impl Ended {
             Stop::EnergyMade(made) => &made.1,
             _ => state,
         };
-        let written = problem.keep_files(folder);
+        // A folder that was removed is not made anew.
+        let written = pending::check_folder(&folder.snapshots()).and_then(|()| problem.keep_files(folder));
         let file = written.and_then(|()| observe::write(scheme, good, files, &folder.snapshots()));
         let ended = |status, error| Self { status, loss: None, result: Err(error) };
         match stop {

@@ -9,7 +9,7 @@ use crate::operators::Certificate;
 use crate::registry::grids::copy;
 use crate::run::Folder;
 use crate::scene::Scene;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Checks what a run of the scene will ask for later: the places of its lines and quantities, its later grids and a file of `operators`.
 ///
@@ -23,6 +23,92 @@ pub fn check_run(scene: &Scene, body: &Body, operators: Option<&Path>) -> Result
         Some(missing) => Err(Error::at(Place::file(missing), "there is no such file", "make it by `dgmpm preprocess`")),
         None => Ok(()),
     }
+}
+
+/// Refuses a folder in which a run would write over files that are not its own, or remove files that it starts from. Changes nothing.
+///
+/// # Errors
+/// Bad input, which names the file.
+pub fn check_folder(
+    (scene, body): (&Scene, &Body),
+    files: &Files,
+    operators: Option<&Path>,
+    folder: &Folder,
+) -> Result<()> {
+    let text = scene.portable_toml(files.mesh.is_some(), files.cloud.is_some());
+    let sources = sources(scene, files, operators, folder);
+    let same = |name: &str| match name {
+        "scene.toml" => std::fs::read_to_string(folder.scene()).is_ok_and(|there| there == text),
+        "mesh.h5" => mesh_file::read_mesh(&folder.mesh()).is_ok_and(|there| there == body.mesh),
+        // Matrices of another problem are refused where they would be replaced.
+        "operators.h5" => true,
+        // Written only for a scene that names such a file.
+        _ if name.starts_with("initial") || name.starts_with("boundary_") || name.starts_with("regrid_") => {
+            sources.iter().all(|source| source.target != folder.root.join(name))
+        }
+        _ => false,
+    };
+    if let Some(name) = folder.foreign().into_iter().find(|name| !same(name)) {
+        return Err(foreign(folder, &name));
+    }
+    let is_same = |a: &Path, b: &Path| a.canonicalize().ok().is_some_and(|a| b.canonicalize().ok() == Some(a));
+    match sources.iter().find(|source| !is_same(&source.path, &source.target) && folder.takes(&source.path)) {
+        None => Ok(()),
+        Some(source) => {
+            let (path, root) = (source.path.display(), folder.root.display());
+            let what = format!("{path} lies in {root}, where this run removes it or writes another file");
+            let remedy = "give another folder by --out, or copy the file out of this folder and name the copy";
+            Err(scene.error(&source.key, what, remedy))
+        }
+    }
+}
+
+/// The error of a file that is not the run's to replace.
+pub(super) fn foreign(folder: &Folder, name: &str) -> Error {
+    let path = folder.root.join(name);
+    let what = format!("{} is in the way: it is not on the list of the files that dgmpm has made there", path.display());
+    Error::input(what, "give another folder by --out, or move the file (also --force leaves files of others alone)")
+}
+
+/// A file that a scene names.
+struct Source {
+    /// The key that names it.
+    key: String,
+    /// Where it is.
+    path: PathBuf,
+    /// Where its copy goes.
+    target: PathBuf,
+}
+
+/// All files that a run starts from.
+fn sources(scene: &Scene, files: &Files, operators: Option<&Path>, folder: &Folder) -> Vec<Source> {
+    let source = |key: &str, path: PathBuf, target: PathBuf| Source { key: key.to_owned(), path, target };
+    let mesh = files.mesh.clone().or_else(|| scene.mesh_path()).map(|path| source("mesh.file", path, folder.mesh()));
+    let cloud = files.cloud.clone().or_else(|| scene.cloud_path());
+    let cloud = cloud.map(|path| source("cloud.path", path, folder.cloud()));
+    let snapshot = scene.initial.snapshot.as_ref();
+    let snapshot =
+        snapshot.map(|path| source("initial.snapshot", scene.resolve(path), folder.root.join("initial.h5")));
+    let operators = operators.map(|path| source("scheme", path.to_owned(), folder.operators()));
+    let mut out: Vec<Source> = [mesh, cloud, snapshot, operators].into_iter().flatten().collect();
+    for (number, boundary) in scene.boundaries.iter().enumerate() {
+        for (parameter, file) in boundary.condition.files() {
+            let target = folder.root.join(Scene::stored_loads(number, parameter.name));
+            out.push(source(
+                &format!("boundary.{number}.{}", parameter.name),
+                scene.resolve(Path::new(file)),
+                target,
+            ));
+        }
+    }
+    for (rule, regrid) in scene.regrids.iter().enumerate() {
+        let (grid, Some(stored)) = (&regrid.grid, regrid.grid.build().files) else { continue };
+        for (k, file) in grid.values.texts(grid.name()).iter().enumerate() {
+            let (key, target) = (format!("regrid.{rule}.{}", grid.name()), folder.root.join((stored.name)(rule, k)));
+            out.push(source(&key, scene.resolve(Path::new(file)), target));
+        }
+    }
+    out
 }
 
 /// Writes scene, mesh and cloud into a run folder. Paths of the scene are replaced by those of the folder. The initial state is

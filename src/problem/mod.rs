@@ -50,7 +50,7 @@ pub use cost::Cost;
 pub use culprit::Culprit;
 pub use ended::Ended;
 pub use export::Export;
-pub use input::{check_run, write_input};
+pub use input::{check_folder, check_run, write_input};
 pub use moved::Moved;
 pub use points::{Given, Sampled, read_points};
 pub use rebuild::Regrids;

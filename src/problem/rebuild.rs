@@ -10,7 +10,7 @@ use crate::boundary::{Boundary, Free};
 use crate::cloud::Cloud;
 use crate::error::Result;
 use crate::io::csv::Table;
-use crate::io::hash;
+use crate::io::{hash, pending};
 use crate::io::snapshot::GridFiles;
 use crate::mesh::Mesh;
 use crate::observe::{Schedule, View};
@@ -135,6 +135,7 @@ impl<'a> Regrids<'a> {
             return Ok(files.clone());
         }
         let files = GridFiles::after(step);
+        pending::check_folder(&folder.root)?;
         body.write(folder, &files)?;
         self.files.insert(key, files.clone());
         Ok(files)

@@ -1,6 +1,6 @@
 //! A run whose results are kept in a folder, as `dgmpm run` keeps them.
 
-use super::{Ended, Files, Outcome, Problem, Solve, write_input};
+use super::{Ended, Files, Outcome, Problem, Solve, check_folder, write_input};
 use crate::error::Result;
 use crate::observe::Observer;
 use crate::run::{Folder, Report};
@@ -12,8 +12,11 @@ impl Problem {
     /// # Errors
     /// Files that cannot be written; a run that lost stability, whose last good state is then among the snapshots.
     pub fn run_in(&mut self, folder: &Folder) -> Result<Report> {
+        let files = Files::default();
+        let _lock = folder.lock()?;
+        check_folder((&self.scene, &self.body), &files, None, folder)?;
         folder.clear_results()?;
-        write_input(self, &Files::default(), folder, self.body.certificates.clone())?;
+        write_input(self, &files, folder, self.body.certificates.clone())?;
         let (report, result) = self.record(folder, vec![], &AtomicBool::new(false), |_, _| {});
         result.map(|()| report)
     }

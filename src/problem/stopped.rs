@@ -1,6 +1,7 @@
 //! A stopped run: its state at a step, brought to another mesh, in a folder that a run goes on from.
 
 use super::Problem;
+use super::input::foreign;
 use crate::error::{Error, Result};
 use crate::io::pending;
 use crate::io::snapshot::{self, GridFiles, Snapshot};
@@ -10,7 +11,7 @@ use crate::regrid::points::Policy;
 use crate::run::Folder;
 use crate::scene::Scene;
 use crate::step::Totals;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A stopped run at one of its snapshots.
 pub struct Stopped<'a> {
@@ -29,15 +30,21 @@ impl<'a> Stopped<'a> {
         Ok(Self { folder, scene: Scene::load(&folder.scene(), &[])?, snapshot })
     }
 
-    /// Refuses the folder of the run itself as the place of the result.
+    /// Refuses a folder as the place of the result that is the one of the run itself, that has the file of the new `mesh` among what is
+    /// removed, or that has files of the user under the names that are written.
     ///
     /// # Errors
-    /// It is that folder.
-    pub fn check_target(&self, to: &Folder) -> Result<()> {
-        match to.root == self.folder.root {
-            true => Err(Error::input("--out is the folder of the run itself", "give another folder")),
-            false => Ok(()),
+    /// One of these.
+    pub fn check_target(&self, to: &Folder, mesh: &Path) -> Result<()> {
+        let same = |a: &Path, b: &Path| a == b || a.canonicalize().ok().is_some_and(|a| b.canonicalize().ok() == Some(a));
+        if same(&to.root, &self.folder.root) {
+            return Err(Error::input("--out is the folder of the run itself", "give another folder"));
         }
+        if to.takes(mesh) {
+            let what = format!("{} lies in {}, where it is removed or replaced", mesh.display(), to.root.display());
+            return Err(Error::input(what, "give another folder by --out"));
+        }
+        to.foreign().first().map_or(Ok(()), |name| Err(foreign(to, name)))
     }
 
     /// The problem on another mesh of the same body, and its totals before and after.
@@ -59,6 +66,7 @@ impl Problem {
     /// # Errors
     /// Files that cannot be written.
     pub fn write_start(&self, folder: &Folder) -> Result<()> {
+        let _lock = folder.lock()?;
         folder.clear_results()?;
         let files = GridFiles::default();
         self.body.write(folder, &files)?;

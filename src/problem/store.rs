@@ -1,8 +1,8 @@
 //! Operators from stored matrices where these belong to the same input, else built and stored.
 
 use super::body::Body;
-use crate::error::Result;
-use crate::io::operators_file;
+use crate::error::{Error, Result};
+use crate::io::{operators_file, own};
 use crate::operators::{Blocks, Line, Operators, Stored};
 use crate::scene::Scene;
 use std::collections::VecDeque;
@@ -39,6 +39,10 @@ impl Store<'_> {
                 Ok(None) => notes.push(format!("{} belongs to other mesh, cloud, degree or method", path.display())),
                 Err(_) => notes.push(format!("{} is damaged", path.display())),
             }
+        }
+        if own::is_foreign(self.write) {
+            let what = format!("{}, and dgmpm has not made it in this folder", notes.join("; "));
+            return Err(Error::input(what, "give another folder by --out, or move the file"));
         }
         let stored = Stored::build(&body.mesh, &blocks, &line, &needs)?;
         operators_file::write(self.write, &key, &stored, &body.certificates)?;

@@ -3,6 +3,7 @@
 use super::Problem;
 use super::effects::{self, effects};
 use crate::error::Result;
+use crate::io::pending;
 use crate::exact::{Errors, Exact, errors};
 use crate::format::{Row, row};
 use crate::quantity::Measured;
@@ -55,6 +56,7 @@ impl<'a> Outcome<'a> {
     /// # Errors
     /// A file that cannot be written.
     pub fn write(&self, folder: &Folder, status: &str, loss: Option<Value>) -> Result<()> {
+        pending::check_folder(&folder.root)?;
         let Problem { scene, body, scheme, state, .. } = self.problem;
         let mut all = self.report.json(scheme, state);
         if let Some(errors) = &self.errors {
@@ -77,7 +79,7 @@ impl<'a> Outcome<'a> {
             all.insert("loss".to_owned(), loss);
         }
         let text = format!("{:#}\n", Value::Object(all));
-        crate::io::pending::write_text(&folder.summary(), &text)
+        pending::write_text(&folder.summary(), &text)
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod folder;
 mod kept;
+mod lock;
 mod norms;
 mod report;
 mod rows;
@@ -10,6 +11,7 @@ mod watch;
 
 pub use folder::Folder;
 pub use kept::{Kept, Lost};
+pub use lock::Lock;
 pub use norms::norms;
 pub use report::{Report, dofs, peak_memory_mib};
 pub use treated::Treated;

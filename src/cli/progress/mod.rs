@@ -12,17 +12,17 @@ use std::time::Instant;
 /// Shows how far the run is.
 pub struct Progress {
     schedule: Schedule,
-    end: f64,
+    span: [f64; 2],
     start: Instant,
     shown: Instant,
     display: Display,
 }
 
 impl Progress {
-    /// For a run to time `end`, s.
-    pub fn new(end: f64) -> Self {
+    /// For a run from `span[0]` to `span[1]`, s.
+    pub fn new(span: [f64; 2]) -> Self {
         let (schedule, now) = (Schedule::new(When::EverySteps(1), false), Instant::now());
-        Self { schedule, end, start: now, shown: now, display: Display::new() }
+        Self { schedule, span, start: now, shown: now, display: Display::new() }
     }
 }
 
@@ -40,8 +40,8 @@ impl Observer for Progress {
     }
 
     fn observe(&mut self, view: &View) -> Result<()> {
-        let (state, share) = (view.state, view.state.time / self.end);
-        let done = state.time >= self.end;
+        let (state, [start, end]) = (view.state, self.span);
+        let (share, done) = (((state.time - start) / (end - start)).clamp(0.0, 1.0), state.time >= end);
         if self.display.is_due(self.shown.elapsed(), done) {
             self.shown = Instant::now();
             let (step, t, dt, min_j) = (state.step, state.time, view.dt, view.survey.min_j);

@@ -2,6 +2,7 @@
 
 use super::{Present, Rule, Values};
 use crate::error::{Error, Result};
+use crate::io::pending::Pending;
 use crate::io::{mesh_file, read_mesh};
 use crate::mesh::Mesh;
 use std::path::Path;
@@ -32,7 +33,9 @@ pub fn copy(from: &Path, to: &Path) -> Result<()> {
     if from.canonicalize().ok().is_some_and(|from| to.canonicalize().is_ok_and(|to| to == from)) {
         return Ok(());
     }
-    std::fs::copy(from, to).map(drop).map_err(|why| Error::output(to, why))
+    let pending = Pending::new(to)?;
+    std::fs::copy(from, pending.path()).map_err(|why| Error::output(to, why))?;
+    pending.commit()
 }
 
 pub(super) fn make(of: &Values, rule: &dyn Rule, count: usize, _: &Present) -> Result<Mesh> {
