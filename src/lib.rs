@@ -77,6 +77,7 @@ mod error;
 mod built;
 mod format;
 mod lane;
+mod words;
 pub mod tensor;
 mod quadrature;
 mod basis;
@@ -138,6 +139,7 @@ pub use observe::{Field, NewGrid, Observer, Point, Schedule, Solution, View};
 pub use riemann::{Acoustic, AcousticCurl, Dual, Impedance, Looks, Medium, Riemann, Rusanov, Trace, star};
 pub use source::{BodyForce, Damping, PressurePulse, Source};
 pub use step::{Balance, Corrected, Correction, Flux, Law, Made, Notes, Rescue};
+pub use words::{Saved, Words};
 
 // Exact solutions and errors.
 pub use exact::{Errors, Exact, Norms, errors};
@@ -165,6 +167,9 @@ pub mod parts {
     }
     pub mod lane {
         pub use crate::lane::*;
+    }
+    pub mod words {
+        pub use crate::words::*;
     }
     pub mod quadrature {
         pub use crate::quadrature::*;

@@ -91,7 +91,7 @@ const BAD: &[Row] = &[
     ),
     ("value = [\"0\", \"1e6*t\"]\n", "", 23, 1, &["needs the key `value`", "Pa"]),
     ("[time]", "impedance = \"exact\"\n[time]", 36, 1, &["`impedance` is not built yet"]),
-    ("[time]", "[checkpoint]\n[time]", 36, 2, &["`checkpoint` is not built yet"]),
+    ("[time]", "[checkpoint]\nevery_step = 3\n[time]", 37, 1, &["did you mean `every_steps`"]),
     ("[time]", "[limiter]\nkind = \"momnt\"\n[time]", 37, 8, &["momnt", "did you mean", "moment"]),
     ("[time]", "[limiter]\nkind = \"moment\"\nbeta = 3\n[time]", 38, 8, &["`beta` is 3", "from 1 to 2"]),
     ("[time]", "[limiter]\nkind = \"vertex\"\nbeta = 2\n[time]", 38, 1, &["unknown key `beta`", "threshold"]),

@@ -1,6 +1,6 @@
 //! The subcommands.
 
-use super::{bench, effects, export, mesh, preprocess, regrid, run, seed, solve, stability, study};
+use super::{bench, effects, export, mesh, preprocess, regrid, resume, run, seed, solve, stability, study};
 use crate::error::Result;
 use clap::Subcommand;
 
@@ -19,6 +19,8 @@ pub enum Command {
     Solve(solve::Args),
     /// Run a scene: mesh, seed, preprocess and solve in one go
     Run(run::Args),
+    /// Go on with a run from its last checkpoint, as if it had never stopped
+    Resume(resume::Args),
     /// Show what accuracy costs in time: methods, degrees and meshes on one problem
     Study(study::Args),
     /// Tell how perturbations of a state grow: spectrum of the linearised step of a patch or a small body
@@ -45,6 +47,7 @@ impl Command {
             Command::Preprocess(args) => preprocess::run(&args),
             Command::Solve(args) => solve::run(&args),
             Command::Run(args) => run::run(&args),
+            Command::Resume(args) => resume::run(&args),
             Command::Study(args) => study::run(&args),
             Command::Stability(args) => stability::run(&args),
             Command::Bench(args) => bench::run(&args),

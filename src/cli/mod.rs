@@ -15,6 +15,7 @@ mod process;
 mod progress;
 mod regrid;
 mod report;
+mod resume;
 mod run;
 mod seed;
 mod solve;
@@ -37,6 +38,9 @@ Stage by stage, each from files:
   dgmpm seed square.toml --mesh square.h5 --out cloud.h5
   dgmpm preprocess square.toml --mesh square.h5 --cloud cloud.h5 --out operators.h5
   dgmpm solve square.toml --mesh square.h5 --cloud cloud.h5 --operators operators.h5
+
+After an interruption, or to a later end:
+  dgmpm resume runs/square
 
 Exit codes: 0 done, 2 bad input, 3 the run lost stability, 4 interrupted and saved, 5 output could not be written.";
 

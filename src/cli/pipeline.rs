@@ -1,7 +1,7 @@
 //! The whole pipeline of a scene into a run folder.
 
 use super::args::SceneArgs;
-use super::interrupt::{self, INTERRUPT};
+use super::interrupt::{self, INTERRUPT, SAVE};
 use super::output::RunArgs;
 use super::print::{note, say, warn};
 use super::progress::Progress;
@@ -55,10 +55,10 @@ fn kept(files: &[PathBuf]) {
 }
 
 /// Steps to the end, and says what came of it.
-fn solve(mut problem: Problem, folder: &Folder) -> Result<()> {
+pub fn solve(mut problem: Problem, folder: &Folder) -> Result<()> {
     interrupt::listen();
-    let progress = Box::new(Progress::new([problem.state.time, problem.settings.end]));
-    let (_, result) = problem.record(folder, vec![progress], &INTERRUPT, summary::print);
+    let progress = Box::new(Progress::new([problem.scene.start, problem.settings.end]));
+    let (_, result) = problem.record(folder, vec![progress], [&INTERRUPT, &SAVE], summary::print);
     say(format!("results in {}", folder.root.display()));
     result
 }

@@ -98,7 +98,7 @@ fn seconds(scene: &Path, sets: &[&str], folder: &Folder) -> Result<f64> {
     let all: Vec<String> = ALL.iter().chain(sets).map(|set| (*set).to_owned()).collect();
     let mut problem = Problem::new(&Scene::load(scene, &all)?)?;
     folder.clear_results()?;
-    let (report, result) = problem.record(folder, vec![], &AtomicBool::new(false), |_, _| {});
+    let (report, result) = problem.record(folder, vec![], [&AtomicBool::new(false); 2], |_, _| {});
     result?;
     Ok(report.cpu / report.steps.max(1) as f64)
 }

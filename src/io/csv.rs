@@ -6,8 +6,8 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use super::own;
-use super::words::{Saved, Words};
 use crate::error::{Error, Result};
+use crate::words::{Saved, Words};
 
 /// Bytes of rows that are kept in memory between two calls of [`Table::flush`].
 const BUFFER: usize = 1 << 20;
@@ -100,21 +100,33 @@ impl Table {
         written
     }
 
-    /// Saves how far the table goes. All rows have to be in the file.
-    pub fn save(&self, to: &mut Words) {
+    /// Saves how far the table goes, once the disk has all rows.
+    ///
+    /// # Errors
+    /// A disk that does not take them.
+    pub fn save(&mut self, to: &mut Words) -> Result<()> {
+        if !self.rows.is_empty() {
+            self.flush()?;
+        }
+        self.file.sync_data().map_err(|e| Error::output(&self.path, e))?;
         to.count(self.length.unwrap_or(0) as usize);
+        Ok(())
     }
 
     /// Goes on behind the last row that was saved; what came after it is cut off.
     ///
     /// # Errors
-    /// A file that has lost rows, or that has another header.
+    /// A file that has lost rows, or that has other columns.
     pub fn restore(&mut self, from: &mut Saved) -> Result<()> {
         let length = from.count()? as u64;
         let fail = |e: std::io::Error| Error::output(&self.path, e);
         let text = std::fs::read(&self.path).map_err(fail)?;
         let kept = usize::try_from(length).ok().and_then(|length| text.get(..length));
-        let whole = kept.is_some_and(|kept| kept.starts_with(self.header.as_bytes()) && kept.ends_with(b"\n"));
+        let fits = |kept: &[u8]| {
+            let header = kept.split(|c| *c == b'\n').next().unwrap_or_default();
+            kept.ends_with(b"\n") && header.iter().filter(|c| **c == b',').count() + 1 == self.columns
+        };
+        let whole = kept.is_some_and(fits);
         if !whole {
             let what = format!("{} has lost rows that the run had written", self.path.display());
             return Err(Error::input(what, "put the file back, or run the scene again with --force"));
@@ -160,7 +172,7 @@ mod tests {
         let mut words = Words::default();
         let mut first = table(&path);
         add(&mut first, 0..2);
-        first.save(&mut words);
+        first.save(&mut words).unwrap();
         add(&mut first, 2..4);
         drop(first);
         // A kill in the middle of a row.

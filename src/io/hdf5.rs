@@ -45,11 +45,23 @@ pub fn create(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Re
     fill_pending(path, fill)?.commit()
 }
 
+/// When a file counts as written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kept {
+    /// Once it has its name: it outlives the program.
+    Named,
+    /// Once the disk has it: it outlives a power cut.
+    OnDisk,
+}
+
 /// Creates a file by `fill`, with a seal that shows later damage. The file appears whole, or not at all.
-pub fn create_sealed(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<()> {
+pub fn create_sealed(path: &Path, kept: Kept, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<()> {
     let pending = fill_pending(path, fill)?;
     seal::put(pending.path()).map_err(|e| Error::output(path, e))?;
-    pending.commit()
+    match kept {
+        Kept::Named => pending.commit(),
+        Kept::OnDisk => pending.commit_to_disk(),
+    }
 }
 
 fn fill_pending(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<Pending> {

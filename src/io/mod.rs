@@ -9,8 +9,10 @@
 //! a list of the files that the program has made there ([`own`]).
 
 mod certificates;
+pub mod checkpoint;
 pub mod cloud_file;
 pub mod csv;
+pub mod fingerprint;
 pub mod gmsh;
 pub mod grid;
 pub mod hash;
@@ -26,7 +28,6 @@ pub mod seal;
 pub mod snapshot;
 pub mod store;
 pub mod vtu;
-pub mod words;
 pub mod xdmf;
 
 pub use load_table::LoadTable;

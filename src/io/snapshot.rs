@@ -7,14 +7,20 @@
 //! ADER-DGFEM and RK-DGFEM), variables in that of the cell's law, which may have none; `boundary` (n), the memory of boundary
 //! conditions, likewise; `received` (groups, 3), what the body has received through each boundary group since the run began (impulse in
 //! N s/m and work in J/m), where an output asks for it; `corrected`, `rescued` (cells), what a limiter and the rescue did, where the run has one. Attributes
-//! `mesh`, `cloud`: the files of the run folder that the state lives on.
+//! `mesh`, `cloud`: the files of the run folder that the state lives on; `mesh_hash`, `points_hash`, `densities`, `laws_hash`: what it was
+//! made on ([`Fingerprint`]), and `program` by which.
 
 use std::path::{Path, PathBuf};
 
-use super::store::{ArrayRef, Format, Store, write_arrays};
+use super::fingerprint::Fingerprint;
+use super::hdf5;
+use super::store::{ArrayRef, Format, Store, write_kept};
 use crate::error::{Error, Result};
 use crate::state::UNKNOWNS;
 use crate::tensor::AXES;
+
+/// The attributes of a fingerprint.
+const HASHES: [&str; 4] = ["mesh_hash", "points_hash", "densities", "laws_hash"];
 
 /// The format of snapshots.
 pub const FORMAT: Format = Format { name: "dgmpm snapshot", version: 1, remedy: "write it again by `dgmpm solve`" };
@@ -48,6 +54,8 @@ pub struct Snapshot {
     pub rescued: Vec<f64>,
     /// The files of its grid.
     pub grid: GridFiles,
+    /// What it was made on; empty texts of files of earlier versions.
+    pub made_on: Fingerprint,
 }
 
 /// Names of the files of a grid in the folder of a run.
@@ -97,6 +105,9 @@ impl Snapshot {
     }
 
     fn fault(&self) -> Option<String> {
+        if !self.time.is_finite() {
+            return Some(format!("its time is {}", self.time));
+        }
         let nodes = (self.degree + 1).pow(2);
         if !self.u.len().is_multiple_of(UNKNOWNS * nodes) {
             return Some(format!(
@@ -125,6 +136,18 @@ impl Snapshot {
 
     /// Writes the snapshot, bit for bit.
     pub fn write(&self, path: &Path) -> Result<()> {
+        self.write_as(path, FORMAT, vec![], vec![], hdf5::Kept::Named)
+    }
+
+    /// Writes the snapshot as a part of a file of another format, with further attributes and arrays.
+    pub(super) fn write_as<'a>(
+        &'a self,
+        path: &Path,
+        format: Format,
+        more_attributes: Vec<(&'a str, String)>,
+        more_arrays: Vec<(&'a str, Vec<usize>, ArrayRef<'a>)>,
+        kept: hdf5::Kept,
+    ) -> Result<()> {
         if let Some(what) = self.fault() {
             return Err(Error::output(path, what));
         }
@@ -151,12 +174,21 @@ impl Snapshot {
             arrays.push(("corrected", vec![self.corrected.len()], ArrayRef::F64(&self.corrected)));
             arrays.push(("rescued", vec![self.rescued.len()], ArrayRef::F64(&self.rescued)));
         }
-        write_arrays(path, FORMAT, &[("mesh", self.grid.mesh.clone()), ("cloud", self.grid.cloud.clone())], &arrays)
+        arrays.extend(more_arrays);
+        let mut attributes = more_attributes;
+        attributes.extend([("mesh", self.grid.mesh.clone()), ("cloud", self.grid.cloud.clone())]);
+        attributes.push(("program", format!("dgmpm {}", env!("CARGO_PKG_VERSION"))));
+        attributes.extend(HASHES.into_iter().zip(self.made_on.texts()).filter(|(_, text)| !text.is_empty()));
+        write_kept(path, format, &attributes, &arrays, kept)
     }
 
     /// Reads a snapshot.
     pub fn read(path: &Path) -> Result<Self> {
-        let mut store = Store::read(path, FORMAT)?;
+        Self::take(&mut Store::read(path, FORMAT)?)
+    }
+
+    /// Takes the snapshot out of a file that holds more.
+    pub(super) fn take(store: &mut Store) -> Result<Self> {
         let mut one = |name: &str| match store.indices(name, &[])?[..] {
             [value] => Ok(value),
             _ => Err(store.error(format!("`{name}` is not one number"))),
@@ -170,6 +202,7 @@ impl Snapshot {
         let name = |key: &str, usual: String| store.attribute(key).map_or(usual, str::to_owned);
         let GridFiles { mesh, cloud } = GridFiles::default();
         let grid = GridFiles { mesh: name("mesh", mesh), cloud: name("cloud", cloud) };
+        let made_on = Fingerprint::from_texts(HASHES.map(|key| name(key, String::new())));
         // Files of earlier versions have no `unheld`, and those of runs without such a memory no `boundary`.
         let knows = |name: &str| store.names().any(|known| known == name);
         let known = [knows("unheld"), knows("boundary"), knows("corrected") && knows("rescued"), knows("received")];
@@ -182,6 +215,7 @@ impl Snapshot {
         };
         Ok(Self {
             grid,
+            made_on,
             corrected,
             rescued,
             unheld,

@@ -53,10 +53,21 @@ pub fn write_arrays(
     attributes: &[(&str, String)],
     arrays: &[(&str, Vec<usize>, ArrayRef)],
 ) -> Result<()> {
+    write_kept(path, format, attributes, arrays, hdf5::Kept::Named)
+}
+
+/// The same, kept as `kept` says.
+pub(super) fn write_kept(
+    path: &Path,
+    format: Format,
+    attributes: &[(&str, String)],
+    arrays: &[(&str, Vec<usize>, ArrayRef)],
+    kept: hdf5::Kept,
+) -> Result<()> {
     let mut all: BTreeMap<String, String> = attributes.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
     all.insert(FORMAT.to_owned(), format.name.to_owned());
     all.insert(VERSION.to_owned(), format.version.to_string());
-    hdf5::create_sealed(path, |file| {
+    hdf5::create_sealed(path, kept, |file| {
         for (name, text) in &all {
             hdf5::put_attribute(file, name, text)?;
         }

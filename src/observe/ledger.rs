@@ -4,6 +4,7 @@ use super::{Observer, Schedule, View};
 use crate::error::Error;
 use crate::io::csv::Table;
 use crate::step::{Balance, Totals};
+use crate::words::{Saved, Words};
 use std::path::Path;
 
 const COLUMNS: [&str; 11] = [
@@ -144,5 +145,13 @@ impl Observer for Ledger {
         self.table.push(&row)?;
         // Each row is written to the disk at once, so that a killed run leaves its history.
         self.table.flush()
+    }
+
+    fn save(&mut self, to: &mut Words) -> Result<(), Error> {
+        self.table.save(to)
+    }
+
+    fn restore(&mut self, from: &mut Saved) -> Result<(), Error> {
+        self.table.restore(from)
     }
 }

@@ -5,6 +5,7 @@ use crate::cloud::locate::Locator;
 use crate::error::Error;
 use crate::io::csv::Table;
 use crate::mesh::Mesh;
+use crate::words::{Saved, Words};
 use std::path::Path;
 
 /// A line of samples.
@@ -114,6 +115,14 @@ impl Observer for Line {
             self.table.push(&row)?;
         }
         self.table.flush()
+    }
+
+    fn save(&mut self, to: &mut Words) -> Result<(), Error> {
+        self.table.save(to)
+    }
+
+    fn restore(&mut self, from: &mut Saved) -> Result<(), Error> {
+        self.table.restore(from)
     }
 
     fn regrid(&mut self, grid: &NewGrid) -> Result<(), Error> {

@@ -24,6 +24,7 @@ use crate::lane::F8;
 use crate::mesh::Mesh;
 use crate::state::State;
 use crate::step::{Balance, EnergyMade, Scheme, Survey};
+use crate::words::{Saved, Words};
 
 /// What an observer sees: the state at the end of a step.
 #[derive(Clone, Copy)]
@@ -81,6 +82,22 @@ pub trait Observer {
 
     /// Something that deserves a line, such as what a regrid did. By default it does nothing.
     fn notice(&mut self, _: &str) {}
+
+    /// Saves what the observer needs to go on in a run that is resumed, beside its schedule. By default nothing.
+    ///
+    /// # Errors
+    /// A file that the disk does not take.
+    fn save(&mut self, _: &mut Words) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// Goes on from what [`Observer::save`] has saved, taken in the same order. The observer has been made for the grid of that time.
+    ///
+    /// # Errors
+    /// What was saved by another observer; files that have lost what was in them.
+    fn restore(&mut self, _: &mut Saved) -> Result<(), Error> {
+        Ok(())
+    }
 
     /// Called when the run continues on another grid. By default it does nothing; observers that keep data of the old
     /// grid need it.

@@ -52,6 +52,16 @@ impl Schedule {
         due
     }
 
+    /// How many of its times have passed.
+    pub fn served(&self) -> usize {
+        self.served
+    }
+
+    /// Goes on where so many of its times have passed.
+    pub fn resume(&mut self, served: usize) {
+        self.served = served;
+    }
+
     /// The next time after `time` at which a step has to end, if times are exact.
     pub fn stop(&self, time: f64) -> Option<f64> {
         let next = self.asked(0, time);

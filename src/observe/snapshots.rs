@@ -2,10 +2,12 @@
 
 use super::{NewGrid, Observer, Schedule, View};
 use crate::error::Error;
+use crate::io::fingerprint::Fingerprint;
 use crate::io::pending;
 use crate::io::snapshot::{self, GridFiles, Snapshot};
 use crate::state::{State, UNKNOWNS};
 use crate::step::Scheme;
+use crate::words::{Saved, Words};
 use std::path::{Path, PathBuf};
 
 /// Writes `<folder>/<step>.h5`.
@@ -32,6 +34,16 @@ impl Observer for Snapshots {
         let Snapshot { corrected, rescued, .. } = treated(view);
         let path = snapshot::path(&self.folder, view.state.step);
         Snapshot { corrected, rescued, grid: self.grid.clone(), ..take(view.scheme, view.state) }.write(&path)
+    }
+
+    fn save(&mut self, to: &mut Words) -> Result<(), Error> {
+        to.text(&self.grid.mesh).text(&self.grid.cloud);
+        Ok(())
+    }
+
+    fn restore(&mut self, from: &mut Saved) -> Result<(), Error> {
+        self.grid = GridFiles { mesh: from.text()?, cloud: from.text()? };
+        Ok(())
     }
 
     fn regrid(&mut self, grid: &NewGrid) -> Result<(), Error> {
@@ -76,6 +88,18 @@ pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
     };
     let (internal, boundary) = (scheme.internal_of(state), scheme.boundary_memory_of(state));
     let received = state.received.iter().flat_map(|group| [group.impulse[0], group.impulse[1], group.work]).collect();
-    let (time, step, degree) = (state.time, state.step, scheme.operators.degree);
-    Snapshot { time, step, degree, u, displacement, unheld, internal, boundary, received, ..Snapshot::default() }
+    let (time, step, degree, made_on) = (state.time, state.step, scheme.operators.degree, Fingerprint::of(scheme));
+    Snapshot {
+        time,
+        step,
+        degree,
+        u,
+        displacement,
+        unheld,
+        internal,
+        boundary,
+        received,
+        made_on,
+        ..Snapshot::default()
+    }
 }

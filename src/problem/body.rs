@@ -145,6 +145,17 @@ impl Body {
         cloud_file::write_with(&folder.root.join(&files.cloud), &self.cloud, &self.mesh, &more)
     }
 
+    /// Writes mesh and points into a run folder where they are not there yet.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    pub fn keep(&self, folder: &Folder, files: &GridFiles) -> Result<()> {
+        match folder.root.join(&files.mesh).exists() && folder.root.join(&files.cloud).exists() {
+            true => Ok(()),
+            false => self.write(folder, files),
+        }
+    }
+
     /// Where the scheme samples: the material points, or the Gauss nodes.
     pub fn places(&self, scene: &Scene) -> Cow<'_, Cloud> {
         scene.places(&self.cloud, &self.material)

@@ -113,7 +113,7 @@ fn of_the_step(Problem { scene, body, scheme, .. }: &Problem, report: &Report) -
     out
 }
 
-/// Outputs and quantities: [`Problem::record`] has the observers of the scene first, and that of the quantities last.
+/// Outputs and quantities: [`Problem::record`] has the observers of the scene first, and then that of the quantities.
 fn observers(Problem { scene, .. }: &Problem, report: &Report) -> Vec<Effect> {
     let named = scene.outputs.iter().map(|output| (output.what.name(), Some(&output.name)));
     let always = super::outputs::always(scene).map(|entry| (entry.name, None));
@@ -123,7 +123,8 @@ fn observers(Problem { scene, .. }: &Problem, report: &Report) -> Vec<Effect> {
         Effect::new(format!("output {kind}"), format!("{name}{}", count(times, "time")), seconds).bytes(bytes)
     };
     let mut out: Vec<Effect> = named.chain(always).zip(&report.observed).map(of).collect();
-    if let (false, Some(&(seconds, times))) = (scene.quantities.is_empty(), report.observed.last()) {
+    // The observer of quantities comes behind those of outputs.
+    if let (false, Some(&(seconds, times))) = (scene.quantities.is_empty(), report.observed.get(out.len())) {
         let what = if scene.quantities.len() == 1 { "quantity" } else { "quantities" };
         let place = format!("{} {what}, {}", scene.quantities.len(), count(times, "time"));
         out.push(Effect::new("quantities", place, seconds));

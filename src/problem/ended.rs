@@ -3,7 +3,7 @@
 use super::Problem;
 use super::lost::{Case, kept};
 use crate::error::{Error, Result};
-use crate::io::pending;
+use crate::io::{pending, snapshot};
 use crate::observe;
 use crate::run::{Folder, Report, Stop};
 use crate::step::EnergyMade;
@@ -39,7 +39,7 @@ impl Ended {
             Stop::Output(error) => ended("failed", error),
             Stop::Interrupted => {
                 let place = match &file {
-                    Ok(path) => format!("the last good state is in {}", path.display()),
+                    Ok(path) => format!("the last good state is in {}{}", path.display(), resume(folder, state.step)),
                     Err(why) => format!("the last good state could not be kept: {why}"),
                 };
                 let at = format!("at step {}, t = {:.6e} s; {place}", state.step, state.time);
@@ -53,6 +53,14 @@ impl Ended {
                 Self { status, loss, result: Err(error) }
             }
         }
+    }
+}
+
+/// How to go on with a run that was kept at its last step.
+fn resume(folder: &Folder, step: usize) -> String {
+    match snapshot::path(&folder.checkpoints(), step).exists() {
+        true => format!("; go on by: dgmpm resume {}", folder.root.display()),
+        false => String::new(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Body, Problem, Setup};
 use crate::error::{Error, Result};
+use crate::io::fingerprint::Fingerprint;
 use crate::io::snapshot::Snapshot;
 use crate::run::Folder;
 use crate::scene::Scene;
@@ -48,8 +49,19 @@ impl Scene {
     /// A snapshot of another grid, degree, law or time.
     pub(super) fn state_of_snapshot(&self, path: &Path, scheme: &Scheme) -> Result<State> {
         let snapshot = Snapshot::read(path)?;
-        self.check_snapshot(&snapshot, scheme.operators.blocks.slot.len())?;
+        self.state_of(&snapshot, scheme)
+    }
+
+    /// The state of a snapshot that was read.
+    ///
+    /// # Errors
+    /// A snapshot of another grid, degree or law.
+    pub(super) fn state_of(&self, snapshot: &Snapshot, scheme: &Scheme) -> Result<State> {
+        self.check_snapshot(snapshot, scheme.operators.blocks.slot.len())?;
         let fail = |what: String, remedy: &str| self.error("initial.snapshot", what, remedy);
+        if let Some((what, remedy)) = snapshot.made_on.misfit(&Fingerprint::of(scheme)) {
+            return Err(fail(format!("the snapshot is of a run with {what}"), remedy));
+        }
         if snapshot.internal.len() != scheme.virgin_internal().len() {
             let what = "the snapshot has the internal variables of other laws or points".to_owned();
             return Err(fail(what, "give the materials and the cloud of that run"));
@@ -66,7 +78,7 @@ impl Scene {
             return Err(fail(what, "give the mesh of that run, with its groups"));
         }
         // Where no output asks for it, the displacement may count from here: what is held are jumps that come now.
-        Ok(unpacked(&snapshot, scheme, self.components()))
+        Ok(unpacked(snapshot, scheme, self.components()))
     }
 
     /// Whether a snapshot is of a mesh of so many cells, of the degree and within the time of the scene.
@@ -80,7 +92,7 @@ impl Scene {
             );
             return Err(fail(what, "give the mesh of that run, or bring it over by `dgmpm regrid`"));
         }
-        if snapshot.time >= self.end {
+        if !(snapshot.time < self.end) {
             let what = format!("the snapshot is at {:e} s, and the run ends at {:e} s", snapshot.time, self.end);
             return Err(fail(what, "give a later time.end"));
         }

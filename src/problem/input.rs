@@ -66,7 +66,8 @@ pub fn check_folder(
 /// The error of a file that is not the run's to replace.
 pub(super) fn foreign(folder: &Folder, name: &str) -> Error {
     let path = folder.root.join(name);
-    let what = format!("{} is in the way: it is not on the list of the files that dgmpm has made there", path.display());
+    let what =
+        format!("{} is in the way: it is not on the list of the files that dgmpm has made there", path.display());
     Error::input(what, "give another folder by --out, or move the file (also --force leaves files of others alone)")
 }
 
@@ -87,18 +88,13 @@ fn sources(scene: &Scene, files: &Files, operators: Option<&Path>, folder: &Fold
     let cloud = files.cloud.clone().or_else(|| scene.cloud_path());
     let cloud = cloud.map(|path| source("cloud.path", path, folder.cloud()));
     let snapshot = scene.initial.snapshot.as_ref();
-    let snapshot =
-        snapshot.map(|path| source("initial.snapshot", scene.resolve(path), folder.root.join("initial.h5")));
+    let snapshot = snapshot.map(|path| source("initial.snapshot", scene.resolve(path), folder.root.join("initial.h5")));
     let operators = operators.map(|path| source("scheme", path.to_owned(), folder.operators()));
     let mut out: Vec<Source> = [mesh, cloud, snapshot, operators].into_iter().flatten().collect();
     for (number, boundary) in scene.boundaries.iter().enumerate() {
         for (parameter, file) in boundary.condition.files() {
             let target = folder.root.join(Scene::stored_loads(number, parameter.name));
-            out.push(source(
-                &format!("boundary.{number}.{}", parameter.name),
-                scene.resolve(Path::new(file)),
-                target,
-            ));
+            out.push(source(&format!("boundary.{number}.{}", parameter.name), scene.resolve(Path::new(file)), target));
         }
     }
     for (rule, regrid) in scene.regrids.iter().enumerate() {

@@ -16,6 +16,8 @@
 mod body;
 mod build;
 pub mod certificates;
+mod checkpoints;
+mod differences;
 mod cost;
 mod cost_rows;
 mod culprit;
@@ -38,6 +40,7 @@ mod points;
 mod quantities;
 mod rebuild;
 mod record;
+mod resume;
 pub mod room;
 mod solve;
 mod start;
@@ -46,6 +49,7 @@ mod store;
 mod summary;
 
 pub use body::{Body, Files};
+pub use checkpoints::{Checkpoints, Resumed};
 pub use cost::Cost;
 pub use culprit::Culprit;
 pub use ended::Ended;
@@ -54,6 +58,7 @@ pub use input::{check_folder, check_run, write_input};
 pub use moved::Moved;
 pub use points::{Given, Sampled, read_points};
 pub use rebuild::Regrids;
+pub use resume::Newest;
 pub use solve::Solve;
 pub use stopped::{Stopped, changes};
 pub use store::{Recent, Store};
@@ -89,6 +94,8 @@ pub struct Problem {
     pub files: GridFiles,
     /// Where the matrices come from, in words; empty where they were built and not stored.
     pub origin: String,
+    /// What a run goes on from beside the state; none where it begins.
+    pub resumed: Option<Resumed>,
 }
 
 /// A problem under construction: what is not given is made from the scene.
@@ -204,7 +211,16 @@ impl<'a> Setup<'a> {
         let settings = scene.settings()?;
         let (scheme, origin) = self.scheme(&body)?;
         let state = start(&body.mesh, &scheme)?;
-        Ok(Problem { scene: scene.clone(), body, scheme, state, settings, files: GridFiles::default(), origin })
+        Ok(Problem {
+            scene: scene.clone(),
+            body,
+            scheme,
+            state,
+            settings,
+            files: GridFiles::default(),
+            origin,
+            resumed: None,
+        })
     }
 }
 
@@ -272,9 +288,6 @@ impl Problem {
     /// # Errors
     /// Files that cannot be written.
     pub fn keep_files(&self, folder: &Folder) -> Result<()> {
-        if folder.root.join(&self.files.mesh).exists() {
-            return Ok(());
-        }
-        self.body.write(folder, &self.files)
+        self.body.keep(folder, &self.files)
     }
 }

@@ -35,7 +35,7 @@ impl Problem {
         let (seen, exact) = (Seen::new(&body.mesh, scheme, state, &body.material), scene.build_exact());
         let start = Start { seen: &seen, exact: exact.as_ref() };
         let named = scene.quantities.iter().enumerate().map(|(i, quantity)| {
-            if quantity.when.is_before(state.time) {
+            if quantity.when.is_before(state.time) && self.resumed.is_none() {
                 let what = format!("`time` is before the start of the run, {:e} s", state.time);
                 return Err(scene.error(&format!("quantity.{i}.time"), what, "give a later time"));
             }

@@ -8,10 +8,10 @@ use super::outputs::schedule_of;
 use super::{Body, Problem, Recent};
 use crate::boundary::{Boundary, Free};
 use crate::cloud::Cloud;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::io::csv::Table;
-use crate::io::{hash, pending};
 use crate::io::snapshot::GridFiles;
+use crate::io::{hash, pending};
 use crate::mesh::Mesh;
 use crate::observe::{Schedule, View};
 use crate::operators::{Limits, Operators};
@@ -22,6 +22,7 @@ use crate::run::{Folder, Pause};
 use crate::scene::{Scene, When};
 use crate::state::{Received, State};
 use crate::step::{Scheme, Totals};
+use crate::words::{Saved, Words};
 use rstar::{RTree, primitives::GeomWithData};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -62,6 +63,36 @@ impl Pause for Regrids<'_> {
             }
         }
         self.next.is_some()
+    }
+
+    fn save(&mut self, to: &mut Words) -> Result<()> {
+        to.count(self.schedules.len());
+        for (schedule, fired) in self.schedules.iter().zip(&self.fired) {
+            to.count(schedule.served()).count(*fired);
+        }
+        let mut files: Vec<_> = self.files.iter().collect();
+        files.sort_unstable_by_key(|(key, _)| *key);
+        to.count(files.len());
+        files.into_iter().for_each(|(key, files)| drop(to.text(key).text(&files.mesh).text(&files.cloud)));
+        self.table.as_mut().map_or(Ok(()), |table| table.save(to))
+    }
+
+    fn restore(&mut self, from: &mut Saved) -> Result<()> {
+        if from.count()? != self.schedules.len() {
+            return Err(Error::input(
+                "the checkpoint was saved with other [[regrid]] rules",
+                "resume with those rules",
+            ));
+        }
+        for (schedule, fired) in self.schedules.iter_mut().zip(&mut self.fired) {
+            schedule.resume(from.count()?);
+            *fired = from.count()?;
+        }
+        self.files.clear();
+        for _ in 0..from.count()? {
+            self.files.insert(from.text()?, GridFiles { mesh: from.text()?, cloud: from.text()? });
+        }
+        self.table.as_mut().map_or(Ok(()), |table| table.restore(from))
     }
 }
 

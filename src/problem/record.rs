@@ -1,6 +1,6 @@
 //! A run whose results are kept in a folder, as `dgmpm run` keeps them.
 
-use super::{Ended, Files, Outcome, Problem, Solve, check_folder, write_input};
+use super::{Checkpoints, Ended, Files, Outcome, Problem, Solve, check_folder, write_input};
 use crate::error::Result;
 use crate::observe::Observer;
 use crate::run::{Folder, Report};
@@ -17,17 +17,19 @@ impl Problem {
         check_folder((&self.scene, &self.body), &files, None, folder)?;
         folder.clear_results()?;
         write_input(self, &files, folder, self.body.certificates.clone())?;
-        let (report, result) = self.record(folder, vec![], &AtomicBool::new(false), |_, _| {});
+        let never = AtomicBool::new(false);
+        let (report, result) = self.record(folder, vec![], [&never; 2], |_, _| {});
         result.map(|()| report)
     }
 
     /// Steps to the end with the outputs of the scene and `more` observers, and writes the summary; the report, and how it ended.
-    /// `look` sees the outcome before it is written, and whether the run came to its end.
+    /// `look` sees the outcome before it is written, and whether the run came to its end. `asked` are set from outside to stop after the
+    /// step under way, and to keep the run and go on.
     pub fn record(
         &mut self,
         folder: &Folder,
         more: Vec<Box<dyn Observer>>,
-        interrupt: &AtomicBool,
+        [interrupt, save]: [&AtomicBool; 2],
         look: impl FnOnce(&Outcome, bool),
     ) -> (Report, Result<()>) {
         let mut report = Report::default();
@@ -40,9 +42,11 @@ impl Problem {
             // In this order: `effects` names the clocks of observers by it.
             let mut observers: Vec<Box<dyn Observer + '_>> =
                 observers.into_iter().map(|observer| observer as _).collect();
-            observers.extend(more.into_iter().map(|observer| observer as Box<dyn Observer>));
             observers.extend(gauge.as_mut().map(|gauge| Box::new(gauge) as Box<dyn Observer + '_>));
-            self.solve(Solve { folder: Some(folder), observers, interrupt }, &mut report)
+            let own = observers.len();
+            observers.extend(more.into_iter().map(|observer| observer as Box<dyn Observer>));
+            let checkpoints = Checkpoints::new(&self.scene, folder, save);
+            self.solve(Solve { folder: Some(folder), observers, own, interrupt, checkpoints }, &mut report)
         });
         let Ended { status, loss, result } = Ended::of(ended, self, &report, folder);
         report.finish(&self.scheme, &self.state);

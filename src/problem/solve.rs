@@ -1,9 +1,12 @@
 //! The time loop from grid to grid.
 
-use super::{Problem, Regrids};
+use super::checkpoints::OnGrid;
+use super::{Checkpoints, Problem, Regrids, Resumed};
 use crate::error::{Error, Result};
-use crate::observe::Observer;
-use crate::run::{End, Folder, Report, Run, Stop};
+use crate::observe::{NewGrid, Observer};
+use crate::run::keep::{self, Keep, MOTION, PAUSE, REPORT};
+use crate::run::{End, Folder, Pause, Report, Run, Stop};
+use crate::words::Saved;
 use cpu_time::ProcessTime;
 use std::sync::atomic::AtomicBool;
 
@@ -13,8 +16,12 @@ pub struct Solve<'a> {
     pub folder: Option<&'a Folder>,
     /// Who looks on; may be empty.
     pub observers: Vec<Box<dyn Observer + 'a>>,
+    /// How many observers, from the first on, go on with what a checkpoint has of them.
+    pub own: usize,
     /// Set from outside to stop after the step under way.
     pub interrupt: &'a AtomicBool,
+    /// What keeps the run; none: nothing does.
+    pub checkpoints: Option<Checkpoints<'a>>,
 }
 
 impl Problem {
@@ -25,7 +32,8 @@ impl Problem {
     pub fn run(&mut self) -> Result<Report> {
         let never = AtomicBool::new(false);
         let mut report = Report::default();
-        let stop = self.solve(Solve { folder: None, observers: vec![], interrupt: &never }, &mut report).err();
+        let with = Solve { folder: None, observers: vec![], own: 0, interrupt: &never, checkpoints: None };
+        let stop = self.solve(with, &mut report).err();
         let stop = stop.map(|stop| self.settle(stop));
         report.finish(&self.scheme, &self.state);
         stop.map_or(Ok(report), Err)
@@ -36,15 +44,28 @@ impl Problem {
     /// # Errors
     /// See [`Stop`].
     pub fn solve(&mut self, with: Solve, report: &mut Report) -> std::result::Result<(), Stop> {
-        let Solve { folder, mut observers, interrupt } = with;
+        let Solve { folder, mut observers, own, interrupt, mut checkpoints } = with;
         let mut regrids = Regrids::new(self, folder)?;
+        if let Some(resumed) = self.resumed.take() {
+            *report = Report::restored(&mut resumed.part(REPORT)?.saved(), self.settings.watch)?;
+            restore(&resumed, &mut observers[..own], &mut regrids, &self.grid())?;
+            if let Some(checkpoints) = &mut checkpoints {
+                checkpoints.observed = resumed.observed;
+                checkpoints.motion = Some(resumed.part(MOTION)?.clone());
+            }
+        }
         loop {
-            let Self { body, scheme, settings, state, .. } = self;
+            let Self { body, scheme, settings, state, files, .. } = self;
             let mut run = Run { mesh: &body.mesh, scheme, settings: *settings, observers, interrupt };
-            if run.advance_until(&mut regrids, state, report)? == End::Done {
+            let mut keep = checkpoints.as_mut().map(|checkpoints| OnGrid { checkpoints, body, files });
+            let keep = keep.as_mut().map(|keep| keep as &mut dyn Keep);
+            if run.advance_kept(&mut regrids, keep, state, report)? == End::Done {
                 return Ok(());
             }
             observers = run.observers;
+            if let Some(checkpoints) = &mut checkpoints {
+                checkpoints.observed = Some(self.state.step);
+            }
             let (step, time) = (self.state.step, self.state.time);
             let named = |why| at_step(why, step, time);
             let clock = ProcessTime::now();
@@ -76,6 +97,26 @@ impl Problem {
             }
         }
     }
+}
+
+/// Gives back what was saved of regrids and observers, which have been made for the present grid.
+fn restore(
+    resumed: &Resumed,
+    observers: &mut [Box<dyn Observer + '_>],
+    regrids: &mut Regrids,
+    grid: &NewGrid,
+) -> Result<()> {
+    let whole =
+        |mut saved: Saved, take: &mut dyn FnMut(&mut Saved) -> Result<()>| take(&mut saved).and_then(|()| saved.end());
+    whole(resumed.part(PAUSE)?.saved(), &mut |from| regrids.restore(from))?;
+    for (number, observer) in observers.iter_mut().enumerate() {
+        observer.regrid(grid)?;
+        whole(resumed.part(&keep::observer(number))?.saved(), &mut |from| {
+            observer.schedule().resume(from.count()?);
+            observer.restore(from)
+        })?;
+    }
+    Ok(())
 }
 
 fn unstable(what: String, time: f64, step: usize) -> Error {

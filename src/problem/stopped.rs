@@ -36,7 +36,8 @@ impl<'a> Stopped<'a> {
     /// # Errors
     /// One of these.
     pub fn check_target(&self, to: &Folder, mesh: &Path) -> Result<()> {
-        let same = |a: &Path, b: &Path| a == b || a.canonicalize().ok().is_some_and(|a| b.canonicalize().ok() == Some(a));
+        let same =
+            |a: &Path, b: &Path| a == b || a.canonicalize().ok().is_some_and(|a| b.canonicalize().ok() == Some(a));
         if same(&to.root, &self.folder.root) {
             return Err(Error::input("--out is the folder of the run itself", "give another folder"));
         }

@@ -3,9 +3,9 @@
 use super::Problem;
 use super::effects::{self, effects};
 use crate::error::Result;
-use crate::io::pending;
 use crate::exact::{Errors, Exact, errors};
 use crate::format::{Row, row};
+use crate::io::pending;
 use crate::quantity::Measured;
 use crate::run::{Folder, Report, norms};
 use serde_json::{Value, json};

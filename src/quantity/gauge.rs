@@ -5,6 +5,7 @@ use super::{Quantity, Seen, Statistic, When};
 use crate::error::Error;
 use crate::exact::Exact;
 use crate::observe::{self, NewGrid, Observer, Schedule, View};
+use crate::words::{Saved, Words};
 use cpu_time::ProcessTime;
 use std::sync::Arc;
 use std::time::Instant;
@@ -110,6 +111,27 @@ impl Observer for &mut Gauge {
         self.look(view);
         self.cost[0] += cpu.elapsed().as_secs_f64();
         self.cost[1] += wall.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    fn save(&mut self, to: &mut Words) -> Result<(), Error> {
+        to.count(self.all.len());
+        for (named, reading) in &self.all {
+            reading.save(to);
+            named.quantity.save(to);
+        }
+        Ok(())
+    }
+
+    fn restore(&mut self, from: &mut Saved) -> Result<(), Error> {
+        if from.count()? != self.all.len() {
+            let what = "the checkpoint was saved with other quantities";
+            return Err(Error::input(what, "give the [[quantity]] tables of that run"));
+        }
+        for (named, reading) in &mut self.all {
+            reading.restore(from)?;
+            named.quantity.restore(from)?;
+        }
         Ok(())
     }
 

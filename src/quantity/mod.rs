@@ -37,6 +37,7 @@ use crate::mesh::Mesh;
 use crate::observe::Solution;
 use crate::state::State;
 use crate::step::{Scheme, Totals};
+use crate::words::{Saved, Words};
 use std::cell::OnceCell;
 
 /// A number that a state has.
@@ -59,6 +60,17 @@ pub trait Quantity {
     /// Whether [`Quantity::integral`] is metered by runs that are asked to ([`crate::observe::Observer::wants_forces`]).
     fn is_metered(&self) -> bool {
         false
+    }
+
+    /// Saves what the quantity has taken from the start of the run. By default nothing.
+    fn save(&self, _: &mut Words) {}
+
+    /// Goes on from what [`Quantity::save`] has saved.
+    ///
+    /// # Errors
+    /// What was saved by another quantity.
+    fn restore(&mut self, _: &mut Saved) -> Result<(), Error> {
+        Ok(())
     }
 
     /// Called when the run goes on on another mesh. By default it does nothing; what keeps places in cells finds them again.

@@ -5,6 +5,7 @@ use super::{Component, Places, Quantity, Seen};
 use crate::error::Error;
 use crate::exact::Exact;
 use crate::mesh::Mesh;
+use crate::words::{Saved, Words};
 use std::sync::Arc;
 
 /// The largest excess of a field above or below a range, over the size of the range; no number while the range has no size.
@@ -65,6 +66,17 @@ impl Quantity for Overshoot {
             return f64::NAN;
         }
         overshoot(self.at.all.iter().map(value), range)
+    }
+
+    fn save(&self, to: &mut Words) {
+        to.reals(&self.range);
+    }
+
+    fn restore(&mut self, from: &mut Saved) -> Result<(), Error> {
+        if let [low, high] = from.reals()?[..] {
+            self.range = [low, high];
+        }
+        Ok(())
     }
 
     fn moved(&mut self, mesh: &Mesh) -> Result<(), Error> {

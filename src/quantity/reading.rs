@@ -1,5 +1,8 @@
 //! From the numbers of single states to the one of a run.
 
+use crate::error::Error;
+use crate::words::{Saved, Words};
+
 names! {
     /// What is taken of the numbers of all states of a run.
     Statistic {
@@ -55,6 +58,32 @@ impl Reading {
     /// Before the first state.
     pub fn new(when: When) -> Self {
         Self { when, value: f64::NAN, settled: false, last: None, sum: [0.0; 2], first: None }
+    }
+
+    /// Saves what is known.
+    pub fn save(&self, to: &mut Words) {
+        let pair =
+            |to: &mut Words, pair: Option<[f64; 2]>| drop(to.flag(pair.is_some()).reals(&pair.unwrap_or_default()));
+        to.real(self.value).flag(self.settled).reals(&self.sum);
+        pair(to, self.last);
+        pair(to, self.first);
+    }
+
+    /// Goes on from what [`Reading::save`] has saved.
+    ///
+    /// # Errors
+    /// What was saved by something else.
+    pub fn restore(&mut self, from: &mut Saved) -> Result<(), Error> {
+        let pair = |from: &mut Saved| -> Result<[f64; 2], Error> {
+            from.count()?;
+            from.array()
+        };
+        (self.value, self.settled, self.sum) = (from.real()?, from.flag()?, pair(from)?);
+        for known in [&mut self.last, &mut self.first] {
+            let (is_known, values) = (from.flag()?, pair(from)?);
+            *known = is_known.then_some(values);
+        }
+        Ok(())
     }
 
     /// Whether the number of the state at `time` is needed; `dt` is the step that follows, 0 at the end of the run.

@@ -173,16 +173,16 @@ impl Folder {
         }
     }
 
-    /// Removes the results of a run behind a step: a run that goes on from there makes them anew.
+    /// Removes the snapshots of a run from a step on, grids that came in later, and the summary: a run that goes on makes them anew.
     ///
     /// # Errors
     /// A file that cannot be removed.
     pub fn cut_back(&self, step: usize) -> Result<(), Error> {
         self.remove_parts();
         for name in self.results() {
-            let (is_later, path) = (step_of(&name).is_some_and(|of| of >= step), self.root.join(&name));
-            // The grid that a run has at a step came in at that step at the latest.
-            if is_later && (name.starts_with("snapshots/") || step_of(&name) > Some(step)) || name == SUMMARY {
+            let first = if name.starts_with("snapshots/") { step } else { step + 1 };
+            if step_of(&name).is_some_and(|of| of >= first) || name == SUMMARY {
+                let path = self.root.join(&name);
                 std::fs::remove_file(&path).map_err(|why| Error::output(&path, why))?;
             }
         }

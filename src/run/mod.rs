@@ -1,15 +1,18 @@
 //! The time loop.
 
 mod folder;
+pub mod keep;
 mod kept;
 mod lock;
 mod norms;
 mod report;
 mod rows;
+mod saved;
 mod treated;
 mod watch;
 
 pub use folder::Folder;
+pub use keep::{Keep, Moment};
 pub use kept::{Kept, Lost};
 pub use lock::Lock;
 pub use norms::norms;
@@ -23,6 +26,7 @@ use crate::mesh::Mesh;
 use crate::observe::{Observer, View};
 use crate::state::State;
 use crate::step::{Balance, EnergyMade, Motion, Scheme, Survey};
+use crate::words::{Saved, Words};
 use cpu_time::ProcessTime;
 use std::sync::atomic::{AtomicBool, Ordering};
 use watch::Alarm;
@@ -84,6 +88,22 @@ pub trait Pause {
 
     /// Whether the run pauses at this state.
     fn due(&mut self, view: &View) -> bool;
+
+    /// Saves what it needs to go on in a run that is resumed. By default nothing.
+    ///
+    /// # Errors
+    /// A file that the disk does not take.
+    fn save(&mut self, _: &mut Words) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// Goes on from what [`Pause::save`] has saved.
+    ///
+    /// # Errors
+    /// What was saved by something else.
+    fn restore(&mut self, _: &mut Saved) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 /// Never.
@@ -126,6 +146,20 @@ impl Run<'_, '_> {
         state: &mut State,
         report: &mut Report,
     ) -> Result<End, Stop> {
+        self.advance_kept(pause, None, state, report)
+    }
+
+    /// The same, kept by `keep`.
+    ///
+    /// # Errors
+    /// See [`Stop`].
+    pub fn advance_kept(
+        &mut self,
+        pause: &mut dyn Pause,
+        keep: Option<&mut dyn Keep>,
+        state: &mut State,
+        report: &mut Report,
+    ) -> Result<End, Stop> {
         let wants = |what: fn(&dyn Observer) -> bool| self.observers.iter().any(|observer| what(&**observer));
         let (forces, balance) = (wants(|observer| observer.wants_forces()), wants(|observer| observer.wants_balance()));
         built::refuse(&[(built::FORCES, forces, "forces"), (built::BALANCE, balance, "the balance of energy")])?;
@@ -138,31 +172,57 @@ impl Run<'_, '_> {
             true => motion = motion.with_forces(self.scheme),
             false => motion.state.received = vec![],
         }
-        let end = self.go(pause, &mut motion, report);
+        let end = self.go(pause, keep, &mut motion, report);
         *state = motion.state;
         end
     }
 
-    /// All steps to the end or to a pause.
-    fn go(&mut self, pause: &mut dyn Pause, motion: &mut Motion, report: &mut Report) -> Result<End, Stop> {
-        if let Err(loss) = motion.survey(self.scheme) {
-            return Err(Kept::new(&motion.state, &Survey::default()).lost(loss, &motion.state, 0.0).into());
+    /// Surveys the state that the run begins or goes on with.
+    fn begin(&self, keep: Option<&mut (dyn Keep + '_)>, motion: &mut Motion) -> Result<(), Stop> {
+        if !motion.state.time.is_finite() {
+            let what = format!("the time of the state is {} s", motion.state.time);
+            return Err(Error::input(what, "give a state with a finite time").into());
         }
+        if let Some(words) = keep.and_then(Keep::resumed) {
+            return Ok(motion.restore(self.scheme, &mut words.saved())?);
+        }
+        motion
+            .survey(self.scheme)
+            .map_err(|loss| Kept::new(&motion.state, &Survey::default()).lost(loss, &motion.state, 0.0).into())
+    }
+
+    /// All steps to the end or to a pause.
+    fn go(
+        &mut self,
+        pause: &mut dyn Pause,
+        mut keep: Option<&mut dyn Keep>,
+        motion: &mut Motion,
+        report: &mut Report,
+    ) -> Result<End, Stop> {
+        self.begin(keep.as_deref_mut(), motion)?;
         report.start(self.scheme, motion, self.settings.watch);
         let mut kept = Kept::new(&motion.state, &motion.survey);
         let h = self.mesh.smallest_h();
         while motion.state.time < self.settings.end {
-            let time = motion.state.time;
+            let (time, stops) = (motion.state.time, self.interrupt.load(Ordering::Relaxed));
+            if let Some(keep) = keep.as_deref_mut()
+                && keep.due(&motion.state, stops)
+            {
+                self.keep(keep, (pause, motion), report)?;
+            }
             let stop = pause.stop(time).unwrap_or(f64::INFINITY).min(self.next_stop(time));
-            let dt = step_size(stop - time, self.settings.courant * h / motion.survey.fastest);
+            let stable = self.settings.courant * h / motion.survey.fastest;
+            let dt = step_size(stop - time, stable);
+            let next = end_of_step(time, dt, stop);
+            check_advance([time, next, self.settings.end], [stable, dt], h)?;
             self.observe(motion, report, dt)?;
-            if self.interrupt.load(Ordering::Relaxed) {
+            if stops {
                 return Err(Stop::Interrupted);
             }
             if pause.due(&view(self.mesh, self.scheme, motion, report.balance.as_ref(), dt)) {
                 return Ok(End::Paused);
             }
-            if let Err(loss) = motion.advance_to(self.scheme, dt, end_of_step(time, dt, stop)) {
+            if let Err(loss) = motion.advance_to(self.scheme, dt, next) {
                 return Err(kept.lost(loss, &motion.state, dt).into());
             }
             let (former, survey) = motion.former();
@@ -178,9 +238,23 @@ impl Run<'_, '_> {
         if let Err(loss) = self.scheme.survey_all(&motion.state, &motion.work, &mut last) {
             return Err(kept.lost(loss, &motion.state, 0.0).into());
         }
+        if let Some(keep) = keep.filter(|keep| keep.at_end()) {
+            self.keep(keep, (pause, motion), report)?;
+        }
         report.see(&last);
         self.observe(motion, report, 0.0)?;
         Ok(End::Done)
+    }
+
+    /// Keeps the run at the state of `motion`, before anybody has observed it.
+    fn keep(
+        &mut self,
+        keep: &mut dyn Keep,
+        (pause, motion): (&mut dyn Pause, &Motion),
+        report: &Report,
+    ) -> Result<(), Error> {
+        let parts = keep::parts(motion, report, pause, &mut self.observers)?;
+        keep.keep(&Moment { scheme: self.scheme, state: &motion.state, parts })
     }
 
     /// The time that a step must not pass: the end, or an exact output before it.
@@ -214,6 +288,32 @@ fn view<'a>(mesh: &'a Mesh, scheme: &'a Scheme, motion: &'a Motion, balance: Opt
 fn end_of_step(time: f64, dt: f64, stop: f64) -> f64 {
     let end = time + dt;
     if (stop - end).abs() < 1e-9 * dt { stop } else { end }
+}
+
+/// Steps of a run that no machine does.
+const ENDLESS: f64 = 1e13;
+
+/// Refuses a step of `dt` to the time `next` that does not lead to the end: not to a later time, or with a stable step of next to nothing.
+///
+/// # Errors
+/// Bad input: cells without a size, a limit of the step of nothing, or a time whose own rounding is larger than the step.
+fn check_advance([time, next, end]: [f64; 3], [stable, dt]: [f64; 2], h: f64) -> Result<(), Error> {
+    let (advance, endless) = (next - time, (end - time) / stable > ENDLESS);
+    // A hundredth of a step lost by rounding is no noise any more.
+    if dt > 0.0 && advance > 0.0 && (advance - dt).abs() <= 0.01 * dt && !endless {
+        return Ok(());
+    }
+    let what = format!("at t = {time:e} s the next step is {dt:e} s: the run would not get to its end at {end:e} s");
+    let remedy = match (h > 0.0, stable > 0.0 && !endless) {
+        (false, _) => {
+            format!("the smallest cell has the size {h:e} m: give a mesh without collapsed or inverted cells")
+        }
+        (true, false) => format!(
+            "the step is a share of {h:e} m, the size of the smallest cell, over the wave speed: give larger cells, or a larger cfl or safety"
+        ),
+        (true, true) => "times have 16 digits: let [time] start nearer to 0, or give a larger cfl or safety".to_owned(),
+    };
+    Err(Error::input(what, remedy))
 }
 
 /// The stable step, shortened evenly over the last ones before a time that lies `rest` ahead.

@@ -46,7 +46,9 @@ pub struct Report {
     pub cpu: f64,
     /// DoF-updates: dofs x stages x steps.
     pub updates: f64,
-    clock: (Instant, ProcessTime),
+    pub(super) clock: (Instant, ProcessTime),
+    /// Seconds on the clock and on all processors before the run was resumed.
+    pub(super) before: [f64; 2],
 }
 
 impl Default for Report {
@@ -70,6 +72,7 @@ impl Default for Report {
             cpu: 0.0,
             updates: 0.0,
             clock: (Instant::now(), ProcessTime::now()),
+            before: [0.0; 2],
         }
     }
 }
@@ -125,9 +128,14 @@ impl Report {
         }
     }
 
+    /// Seconds on the clock and on all processors so far.
+    pub(super) fn seconds(&self) -> [f64; 2] {
+        [self.before[0] + self.clock.0.elapsed().as_secs_f64(), self.before[1] + self.clock.1.elapsed().as_secs_f64()]
+    }
+
     /// Stops the clocks and takes the totals; also for a run that stopped early.
     pub fn finish(&mut self, scheme: &Scheme, state: &State) {
-        (self.wall, self.cpu) = (self.clock.0.elapsed().as_secs_f64(), self.clock.1.elapsed().as_secs_f64());
+        [self.wall, self.cpu] = self.seconds();
         let last = scheme.totals(state);
         self.min_j = self.min_j.min(last.min_j);
         self.watch.close(last.accounted(), state);

@@ -1,7 +1,9 @@
 //! How many cells a limiter and the rescue have changed in a run.
 
+use crate::error::Result;
 use crate::format::{Row, row};
 use crate::step::{Counts, Scheme};
+use crate::words::{Saved, Words};
 use serde_json::{Value, json};
 
 /// Sums over the steps of a run.
@@ -32,6 +34,18 @@ impl Treated {
             self.shares[k] += share;
             self.most[k] = self.most[k].max(share);
         }
+    }
+
+    pub(super) fn save(&self, to: &mut Words) {
+        to.count(self.steps).count(self.rescues).reals(&self.shares).reals(&self.most);
+    }
+
+    pub(super) fn restored(from: &mut Saved) -> Result<Self> {
+        let (steps, rescues) = (from.count()?, from.count()?);
+        from.count()?;
+        let shares = from.array()?;
+        from.count()?;
+        Ok(Self { steps, rescues, shares, most: from.array()? })
     }
 
     /// The mean share of a kind over the steps.

@@ -4,9 +4,11 @@
 //! the lowest value so far is energy made out of nothing. It is measured against the largest of the energy at the start, the
 //! work done so far, and [`ROUNDING`] int rho0 c_p^2 dX: what is below is noise of the energy's own rounding.
 
+use crate::error::Result;
 use crate::operators::Blocks;
 use crate::state::State;
 use crate::step::{Balance, EnergyMade, Scheme, Totals, Work};
+use crate::words::{Saved, Words};
 
 /// Shares of energy made at which something is done.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -68,6 +70,19 @@ impl Watch {
     pub fn new(scheme: &Scheme, first: &Totals, limits: Option<Limits>) -> Self {
         let scale = first.energy().max(ROUNDING * stiffness(scheme));
         Self { limits, scale, lowest: first.accounted(), ..Self::default() }
+    }
+
+    pub(super) fn save(&self, to: &mut Words) {
+        let Self { work, regrids, scale, lowest, made, warned, steps, limits: _, cells: _ } = self;
+        to.real(work[0]).real(work[1]).real(*regrids).real(*scale).real(*lowest);
+        to.real(made.joule).real(made.share).real(made.time).count(made.step).flag(*warned).count(*steps);
+    }
+
+    pub(super) fn restored(from: &mut Saved, limits: Option<Limits>) -> Result<Self> {
+        let (work, [regrids, scale, lowest]) = (from.array()?, from.array()?);
+        let ([joule, share, time], step) = (from.array()?, from.count()?);
+        let (made, warned, steps) = (EnergyMade { joule, share, time, step }, from.flag()?, from.count()?);
+        Ok(Self { limits, work, regrids, scale, lowest, made, warned, steps, cells: vec![] })
     }
 
     /// Whether it has something to look at every so many steps.

@@ -72,6 +72,8 @@ pub struct Scene {
     pub quantities: Vec<Quantity>,
     /// The watch over the energy; none where it is off.
     pub watch: Option<Watch>,
+    /// When the run is kept so that it can be resumed; none: only where a signal asks for it.
+    pub checkpoint: Option<Checkpoint>,
     /// When the run gets another grid.
     pub regrids: Vec<regrid::Regrid>,
     #[serde(skip)]
@@ -191,6 +193,16 @@ pub struct Watch {
     pub warn: f64,
     /// The run stops.
     pub stop: f64,
+}
+
+/// When a run is kept so that it can be resumed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Checkpoint {
+    /// Every so many minutes.
+    Minutes(f64),
+    /// Every so many steps.
+    Steps(usize),
 }
 
 /// Method, degrees, flux and step size.

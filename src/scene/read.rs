@@ -4,7 +4,7 @@ use super::origin::Origin;
 use super::points::General;
 use super::reader::Reader;
 use super::tables::{self, SAFETY, WATCHED};
-use super::{Boundary, Cloud, Exact, Initial, Material, Mesh, Scene, Scheme, Source, Step, Watch};
+use super::{Boundary, Checkpoint, Cloud, Exact, Initial, Material, Mesh, Scene, Scheme, Source, Step, Watch};
 use crate::error::Result;
 use crate::expression::Expression;
 use crate::registry::{
@@ -17,7 +17,6 @@ use toml_edit::Document;
 /// Reads a whole scene.
 pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> {
     let mut root = Reader::new(document.as_table(), Vec::new(), &origin, "the scene".to_owned());
-    root.later(&["checkpoint"]);
     let title = root.text("title")?;
     let mut mesh_table = root.table("mesh")?;
     let mut cloud_table = root.table("cloud")?;
@@ -31,6 +30,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     let mut scheme_table = root.table("scheme")?;
     let mut time_table = root.table("time")?;
     let mut watch_table = root.table("watch")?;
+    let mut checkpoint_table = root.table("checkpoint")?;
     let output_tables = root.tables("output")?;
     let quantity_tables = root.tables("quantity")?;
     let regrid_tables = root.tables("regrid")?;
@@ -72,6 +72,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         quantities: super::quantities::quantities(quantity_tables, &materials, [start, end], degree)?,
         materials,
         watch: watch(watch_table.as_mut())?,
+        checkpoint: checkpoint_table.as_mut().map(checkpoint).transpose()?,
         regrids: super::regrid::regrids(regrid_tables, [start, end], degree)?,
         origin: Origin::default(),
     };
@@ -298,6 +299,23 @@ fn watch(table: Option<&mut Reader>) -> Result<Option<Watch>> {
         return Err(table.wrong("warn", what, "give a share up to that of `energy`, or leave it out"));
     }
     Ok((!off).then_some(Watch { warn, stop }))
+}
+
+/// Minutes between two checkpoints, where the table does not say. A checkpoint of 1e6 DoF takes .2 s.
+const MINUTES: f64 = 10.0;
+
+fn checkpoint(table: &mut Reader) -> Result<Checkpoint> {
+    let values = table.values(tables::CHECKPOINT)?;
+    table.finish()?;
+    match (values.maybe_integer("every_steps"), values.maybe("every_minutes")) {
+        (Some(_), Some(_)) => Err(table.wrong(
+            "every_minutes",
+            "[checkpoint] has both `every_steps` and `every_minutes`",
+            "keep one of them",
+        )),
+        (Some(steps), None) => Ok(Checkpoint::Steps(steps)),
+        (None, minutes) => Ok(Checkpoint::Minutes(minutes.unwrap_or(MINUTES))),
+    }
 }
 
 fn time(table: &mut Reader) -> Result<(f64, f64)> {

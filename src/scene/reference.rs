@@ -74,6 +74,10 @@ fn all(page: &mut String) {
     keys(page, tables::TIME);
     head(page, "[watch]", "The watch over the energy, see run.md.");
     keys(page, tables::WATCH);
+    let about = "When the run is kept so that `dgmpm resume` goes on with it, see run.md; without this table only where a signal asks \
+                 for it.";
+    head(page, "[checkpoint]", about);
+    keys(page, tables::CHECKPOINT);
     head(
         page,
         "[[output]]",

@@ -266,6 +266,17 @@ pub(super) const QUANTITY: &[Parameter] = &[
     ),
 ];
 
+pub(super) const CHECKPOINT: &[Parameter] = &[
+    key(
+        "every_minutes",
+        "minutes between two checkpoints",
+        "min",
+        Form::Number(POSITIVE),
+        Preset::Absent("10, where `every_steps` is absent"),
+    ),
+    key("every_steps", "steps between two checkpoints", "", Form::Integer(1, usize::MAX), Preset::Absent("none")),
+];
+
 pub(super) const CRITERIA: &[Parameter] = &[
     key(
         "certificate",

@@ -1,8 +1,11 @@
 //! A body in motion: its state, what the survey tells of it, and the memory of the steps.
 
-use super::{Loss, Scheme, Survey, Work};
+use super::{Loss, Scheme, Speeds, Survey, Work};
 use crate::built;
+use crate::error::Error;
+use crate::lane::F8;
 use crate::state::{Received, State};
+use crate::words::{Saved, Words};
 
 /// A state that goes from step to step.
 ///
@@ -59,6 +62,29 @@ impl Motion {
     /// The first cell that has no stability.
     pub fn survey(&mut self, scheme: &Scheme) -> Result<(), Loss> {
         scheme.survey_all(&self.state, &self.work, &mut self.survey)
+    }
+
+    /// Saves what the next step and observers look at beside the state: its survey, and what corrections did in its cells.
+    pub fn save(&self, to: &mut Words) {
+        let speed = self.survey.speed.iter().flat_map(|speed| [speed.fastest, speed.prestress]);
+        to.blocks(&speed.collect::<Vec<_>>()).real(self.survey.fastest).real(self.survey.min_j);
+        to.blocks(self.work.treated());
+    }
+
+    /// Takes the place of [`Motion::survey`] for a state that was saved.
+    ///
+    /// # Errors
+    /// Numbers of another grid or of other corrections.
+    pub fn restore(&mut self, scheme: &Scheme, from: &mut Saved) -> crate::error::Result<()> {
+        let (speed, fastest, min_j, treated) = (from.blocks()?, from.real()?, from.real()?, from.blocks()?);
+        if speed.len() != 2 * scheme.operators.blocks.len() || treated.len() != self.work.treated().len() {
+            let what = "the checkpoint is of another grid or of a run with another limiter";
+            return Err(Error::input(what, "resume the run with its own scene and files"));
+        }
+        let of = |[fastest, prestress]: &[F8; 2]| Speeds { fastest: *fastest, prestress: *prestress };
+        self.survey = Survey { speed: speed.as_chunks().0.iter().map(of).collect(), fastest, min_j };
+        self.work.set_treated(treated);
+        Ok(())
     }
 
     /// Does a step of `dt`, and surveys the result.

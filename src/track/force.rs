@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::quantity::Seen;
 use crate::state::Received;
+use crate::words::{Saved, Words};
 
 /// What boundary groups give to the body: force (N/m, mean since the row before, 0 in the first row), impulse (N s/m) and work (J/m)
 /// since the start of the run; a run that starts from a snapshot with forces goes on from them.
@@ -74,6 +75,34 @@ impl Track for Forces {
                 Error::input(what, "give the boundary its old name in the new mesh")
             })?;
         }
+        Ok(())
+    }
+
+    fn save(&self, to: &mut Words) {
+        to.real(self.time).count(self.groups.len());
+        for Group { name, before, force, .. } in &self.groups {
+            let Received { impulse, work } = before.unwrap_or_default();
+            to.text(name).flag(before.is_some()).reals(&[impulse[0], impulse[1], work]).reals(force);
+        }
+    }
+
+    fn restore(&mut self, from: &mut Saved) -> Result<(), Error> {
+        self.time = from.real()?;
+        let count = from.count()?;
+        let mut groups = Vec::new();
+        for _ in 0..count {
+            let (name, is_known) = (from.text()?, from.flag()?);
+            let (received, force) = (from.reals()?, from.reals()?);
+            // The columns have the order of the first mesh.
+            let number = self.groups.iter().find(|group| group.name == name).map(|group| group.number);
+            let ([one, two, work], [x, y], Some(number)) = (&received[..], &force[..], number) else {
+                let what = format!("the checkpoint has forces of \"{name}\", which this output does not follow");
+                return Err(Error::input(what, "resume with the outputs of that run"));
+            };
+            let before = is_known.then_some(Received { impulse: [*one, *two], work: *work });
+            groups.push(Group { name, number, before, force: [*x, *y] });
+        }
+        self.groups = groups;
         Ok(())
     }
 

@@ -22,6 +22,7 @@ use crate::io::csv::Table;
 use crate::mesh::Mesh;
 use crate::observe::{NewGrid, Observer, Schedule, View};
 use crate::quantity::Seen;
+use crate::words::{Saved, Words};
 use std::path::Path;
 
 /// A column: its name and its unit, empty for a pure number.
@@ -40,6 +41,17 @@ pub trait Track {
     /// # Errors
     /// The mesh lacks what is followed.
     fn moved(&mut self, _mesh: &Mesh) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// Saves what the next row depends on beside the state. By default nothing.
+    fn save(&self, _: &mut Words) {}
+
+    /// Goes on from what [`Track::save`] has saved.
+    ///
+    /// # Errors
+    /// What was saved by another track.
+    fn restore(&mut self, _: &mut Saved) -> Result<(), Error> {
         Ok(())
     }
 
@@ -92,6 +104,16 @@ impl Observer for Tracked {
         self.table.push(&row)?;
         // Each row is written to the disk at once, so that a killed run leaves its history.
         self.table.flush()
+    }
+
+    fn save(&mut self, to: &mut Words) -> Result<(), Error> {
+        self.what.save(to);
+        self.table.save(to)
+    }
+
+    fn restore(&mut self, from: &mut Saved) -> Result<(), Error> {
+        self.what.restore(from)?;
+        self.table.restore(from)
     }
 
     fn regrid(&mut self, grid: &NewGrid) -> Result<(), Error> {

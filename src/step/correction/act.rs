@@ -168,6 +168,13 @@ impl Work {
     pub fn treated(&self) -> &[F8] {
         self.corrections.as_ref().map_or(&[], |memory| &memory.treated)
     }
+
+    /// Goes on from such numbers of a run that was saved; of the same number of blocks.
+    pub(crate) fn set_treated(&mut self, treated: Vec<F8>) {
+        if let Some(memory) = &mut self.corrections {
+            memory.treated = treated;
+        }
+    }
 }
 
 /// How many cells corrections and the rescue have looked at and changed in a step.

@@ -1,0 +1,40 @@
+//! `dgmpm resume`: goes on with a run from its last checkpoint, as if it had never stopped.
+
+use super::pipeline::solve;
+use super::print::{say, warn};
+use super::threads::{self, start_threads};
+use crate::error::Result;
+use crate::problem::Newest;
+use crate::run::Folder;
+use std::path::PathBuf;
+
+/// Arguments.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Folder of a run, such as runs/square
+    run: PathBuf,
+    /// Override title, time.end, [watch] or [checkpoint]: a later end extends a run that is done
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    sets: Vec<String>,
+    /// Threads [default: all processors]; the results do not depend on it
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Instruction set; it has to be that of the run
+    #[arg(long, value_name = "NAME")]
+    kernel: Option<String>,
+}
+
+/// Runs it.
+pub fn run(args: &Args) -> Result<()> {
+    args.threads.map_or(Ok(()), start_threads)?;
+    let kernel = args.kernel.as_deref().map(|name| threads::kernel(Some(name))).transpose()?;
+    let folder = Folder::new(&args.run);
+    let newest = Newest::read(&folder)?;
+    let _lock = folder.lock()?;
+    newest.damaged.iter().for_each(warn);
+    let ((time, step), path) = (newest.at(), newest.path.clone());
+    let problem = newest.problem(&folder, &args.sets, kernel)?;
+    say(&problem.scene.title);
+    say(format!("resumed at step {step}, t = {time:.6e} s, from {}", path.display()));
+    solve(problem, &folder)
+}

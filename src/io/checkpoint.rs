@@ -1,0 +1,94 @@
+//! `checkpoints/000123.h5`: all that a run needs to go on as if it had never stopped. The last two are kept.
+//!
+//! The arrays are those of a snapshot, and `part_<name>` with the numbers of whatever lives on beside the state
+//! ([`crate::words::Words`]): survey, report, rules of regrids, observers. The text of the scene is such a part.
+//! Attributes: those of a snapshot; `kernel`, the instruction set; `observed`, whether outputs have seen the state. A checkpoint has a seal, or is refused.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::hdf5::Kept;
+use super::seal::{self, Seal};
+use super::snapshot::{self, Snapshot};
+use super::store::{ArrayRef, Format, Store};
+use crate::error::{Error, Place, Result};
+use crate::words::Words;
+
+/// The format of checkpoints.
+pub const FORMAT: Format = Format { name: "dgmpm checkpoint", version: 1, remedy: REMEDY };
+const REMEDY: &str = "resume from an older checkpoint, or run the scene again with --force";
+/// Before the name of a part.
+const PART: &str = "part_";
+/// The part of the scene.
+const SCENE: &str = "scene";
+/// How many are kept.
+const KEPT: usize = 2;
+
+/// A run between two steps.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Checkpoint {
+    /// The state.
+    pub snapshot: Snapshot,
+    /// The text of its scene.
+    pub scene: String,
+    /// The instruction set that it was stepped by.
+    pub kernel: String,
+    /// Whether outputs have seen the state: the run has changed its grid since.
+    pub observed: bool,
+    /// The numbers of what lives on, by its name.
+    pub parts: BTreeMap<String, Words>,
+}
+
+impl Checkpoint {
+    /// Writes it into a folder, and removes all but the last ones there. It appears whole and on the disk, or not at all.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<PathBuf> {
+        let path = snapshot::path(folder, self.snapshot.step);
+        let attributes =
+            vec![("kernel", self.kernel.clone()), ("observed", if self.observed { "yes" } else { "no" }.to_owned())];
+        let mut scene = Words::default();
+        scene.text(&self.scene);
+        let all = self.parts.iter().map(|(name, words)| (&name[..], words)).chain([(SCENE, &scene)]);
+        let names: Vec<(String, &Words)> = all.map(|(name, words)| (format!("{PART}{name}"), words)).collect();
+        let arrays = names.iter().map(|(name, words)| (&name[..], vec![words.0.len()], ArrayRef::U64(&words.0)));
+        self.snapshot.write_as(&path, FORMAT, attributes, arrays.collect(), Kept::OnDisk)?;
+        let mut all = list(folder)?;
+        all.retain(|(_, other)| *other != path);
+        for (_, old) in &all[..all.len().saturating_sub(KEPT - 1)] {
+            std::fs::remove_file(old).map_err(|why| Error::output(old, why))?;
+        }
+        Ok(path)
+    }
+
+    /// Reads one.
+    ///
+    /// # Errors
+    /// A file that is damaged or is no checkpoint.
+    pub fn read(path: &Path) -> Result<Self> {
+        let fail = |what: &str| Error::at(Place::file(path), what, REMEDY);
+        if seal::check(path).map_err(|why| fail(&format!("cannot be read: {why}")))? != Seal::Whole {
+            return Err(fail("the file is damaged: its bytes are not those that were written"));
+        }
+        let mut store = Store::read(path, FORMAT)?;
+        let [kernel, observed] = ["kernel", "observed"].map(|name| store.attribute(name).map(str::to_owned));
+        let names: Vec<String> = store.names().filter_map(|name| name.strip_prefix(PART)).map(str::to_owned).collect();
+        let mut parts = BTreeMap::new();
+        for name in names {
+            let words = Words(store.unsigned(&format!("{PART}{name}"), &[])?);
+            parts.insert(name, words);
+        }
+        let snapshot = Snapshot::take(&mut store)?;
+        let scene = parts.remove(SCENE).unwrap_or_default().saved().text()?;
+        Ok(Self { snapshot, scene, kernel: kernel?, observed: observed? == "yes", parts })
+    }
+}
+
+/// The checkpoints of a folder, as (step, file), in the order of steps; none where it is not there.
+///
+/// # Errors
+/// A folder that cannot be listed.
+pub fn list(folder: &Path) -> Result<Vec<(usize, PathBuf)>> {
+    if folder.is_dir() { snapshot::list(folder) } else { Ok(vec![]) }
+}

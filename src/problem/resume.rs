@@ -1,0 +1,104 @@
+//! A run that goes on from its last checkpoint.
+
+use super::differences::difference;
+use super::{Body, Problem, Resumed, Setup};
+use crate::error::{Error, Result};
+use crate::io::checkpoint::{self, Checkpoint};
+use crate::io::fingerprint::Fingerprint;
+use crate::io::pending;
+use crate::lane::Kernel;
+use crate::run::Folder;
+use crate::scene::Scene;
+use std::path::PathBuf;
+
+/// The newest checkpoint of a run that is whole.
+pub struct Newest {
+    checkpoint: Checkpoint,
+    /// Its file.
+    pub path: PathBuf,
+    /// Newer ones that are damaged, in words.
+    pub damaged: Vec<String>,
+}
+
+impl Newest {
+    /// Reads the newest checkpoint of a folder; where it is damaged, the one before.
+    ///
+    /// # Errors
+    /// A folder without a run, or without a whole checkpoint.
+    pub fn read(folder: &Folder) -> Result<Self> {
+        let root = folder.root.display();
+        if !folder.scene().is_file() {
+            let what = format!("{root} is not the folder of a run: it holds no scene.toml");
+            return Err(Error::input(what, "give the folder that `dgmpm run` has written, such as runs/square"));
+        }
+        let mut damaged = Vec::new();
+        for (_, path) in checkpoint::list(&folder.checkpoints())?.into_iter().rev() {
+            match Checkpoint::read(&path) {
+                Ok(checkpoint) => return Ok(Self { checkpoint, path, damaged }),
+                Err(why) => damaged.push(why.to_string()),
+            }
+        }
+        let what = match damaged.first() {
+            Some(why) => format!("{root} holds no whole checkpoint: {why}"),
+            None => format!("{root} holds no checkpoint"),
+        };
+        let remedy =
+            "run the scene again with --force, with [checkpoint] in it; `[initial] snapshot` begins from a snapshot";
+        Err(Error::input(what, remedy))
+    }
+
+    /// Time of its state, s, and its step.
+    pub fn at(&self) -> (f64, usize) {
+        (self.checkpoint.snapshot.time, self.checkpoint.snapshot.step)
+    }
+
+    /// The problem at the checkpoint, with overrides `key.path=value` of its scene, and on the same instruction set. What the run wrote
+    /// after the checkpoint is removed from its folder, and written again by the run.
+    ///
+    /// # Errors
+    /// A scene in which a key differs that may not; files of the folder that are not those of the run; a run that is at its end.
+    pub fn problem(self, folder: &Folder, sets: &[String], kernel: Option<Kernel>) -> Result<Problem> {
+        let Checkpoint { snapshot, scene: text, kernel: name, observed, parts } = self.checkpoint;
+        let (old, scene) = (Scene::parse(&text, &folder.scene(), &[])?, Scene::load(&folder.scene(), sets)?);
+        if let Some(what) = difference(&old, &scene) {
+            let remedy = "only title, time.end, [watch] and [checkpoint] may change; for another scene use `dgmpm run`";
+            return Err(Error::input(format!("the checkpoint is of another scene: {what}"), remedy));
+        }
+        if snapshot.time >= scene.end {
+            let what = format!("the run is at its end, {:e} s", snapshot.time);
+            return Err(scene.error("time.end", what, "give a later end by --set time.end=.."));
+        }
+        let kernel = kernel_of(&name, kernel)?;
+        let body = Body::read(&scene, folder, &snapshot.grid)?;
+        let problem = Setup::of(&scene).kernel(kernel).build_from(body, |_, scheme| {
+            if let Some((what, _)) = snapshot.made_on.misfit(&Fingerprint::of(scheme)) {
+                let what = format!(
+                    "mesh, points or materials in {} are not those of the checkpoint: {what}",
+                    folder.root.display()
+                );
+                return Err(Error::input(what, "put the files of the run back, or run the scene again with --force"));
+            }
+            scene.state_of(&snapshot, scheme)
+        })?;
+        let observed_at = observed.then_some(snapshot.step);
+        folder.cut_back(snapshot.step + usize::from(observed))?;
+        if !sets.is_empty() {
+            pending::write_text(&folder.scene(), &scene.to_toml())?;
+        }
+        Ok(Problem { files: snapshot.grid, resumed: Some(Resumed { parts, observed: observed_at }), ..problem })
+    }
+}
+
+/// The instruction set of a checkpoint, which another one may not take the place of: the last digits differ.
+fn kernel_of(name: &str, asked: Option<Kernel>) -> Result<Kernel> {
+    let known = Kernel::NAMES.iter().find(|(known, _)| *known == name).map(|(_, kernel)| *kernel);
+    let remedy = "resume on a processor that has it, or run the scene again with --force and --kernel";
+    match known.filter(|kernel| kernel.is_available()) {
+        None => Err(Error::input(format!("the run was stepped by {name}, which this processor lacks"), remedy)),
+        Some(kernel) if asked.is_some_and(|asked| asked != kernel) => {
+            let what = format!("the run was stepped by {name}: another --kernel would change its last digits");
+            Err(Error::input(what, "leave out --kernel"))
+        }
+        Some(kernel) => Ok(kernel),
+    }
+}

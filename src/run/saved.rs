@@ -1,0 +1,104 @@
+//! What a checkpoint holds of the figures of a run, so that those of a run that is resumed go on.
+
+use super::{Limits, Report, Treated, Watch};
+use crate::error::Result;
+use crate::step::phase::Phases;
+use crate::step::{Balance, Totals};
+use crate::words::{Saved, Words};
+use cpu_time::ProcessTime;
+use std::time::Instant;
+
+impl Report {
+    /// Saves its figures.
+    pub fn save(&self, to: &mut Words) {
+        to.count(self.steps).real(self.updates).real(self.min_j).reals(&self.dt).reals(&self.seconds());
+        to.reals(&self.phases.seconds).reals(&self.phases.parts).real(self.rescue);
+        to.real(self.regrids.0).count(self.regrids.1).count(self.bytes).count(self.observed.len());
+        self.observed.iter().for_each(|(seconds, count)| drop(to.real(*seconds).count(*count)));
+        to.flag(self.first.is_some());
+        self.first.iter().for_each(|first| save_totals(first, to));
+        to.flag(self.balance.is_some());
+        self.balance.iter().for_each(|balance| save_balance(balance, to));
+        self.watch.save(to);
+        to.flag(self.treated.is_some());
+        self.treated.iter().for_each(|treated| treated.save(to));
+    }
+
+    /// The figures of a run that goes on under a watch with these limits.
+    ///
+    /// # Errors
+    /// What was saved by something else.
+    pub fn restored(from: &mut Saved, limits: Option<Limits>) -> Result<Self> {
+        let mut out = Self { steps: from.count()?, updates: from.real()?, min_j: from.real()?, ..Self::default() };
+        let pair = |from: &mut Saved| from.count().and_then(|_| from.array());
+        (out.dt, out.before) = (pair(from)?, pair(from)?);
+        out.clock = (Instant::now(), ProcessTime::now());
+        out.phases = restored_phases(from)?;
+        out.rescue = from.real()?;
+        (out.regrids, out.bytes) = ((from.real()?, from.count()?), from.count()?);
+        for _ in 0..from.count()? {
+            out.observed.push((from.real()?, from.count()?));
+        }
+        out.first = if from.flag()? { Some(restored_totals(from)?) } else { None };
+        out.balance = if from.flag()? { Some(restored_balance(from)?) } else { None };
+        out.watch = Watch::restored(from, limits)?;
+        out.treated = if from.flag()? { Some(Treated::restored(from)?) } else { None };
+        Ok(out)
+    }
+}
+
+fn restored_phases(from: &mut Saved) -> Result<Phases> {
+    let (seconds, parts) = (from.reals()?, from.reals()?);
+    let mut out = Phases::default();
+    out.seconds.iter_mut().zip(seconds).for_each(|(out, s)| *out = s);
+    out.parts.iter_mut().zip(parts).for_each(|(out, s)| *out = s);
+    Ok(out)
+}
+
+fn save_totals(totals: &Totals, to: &mut Words) {
+    let Totals { kinetic, strain, momentum, deformation, min_j, max_curl, .. } = totals;
+    to.reals(&[*kinetic, *strain, momentum[0], momentum[1], *min_j, *max_curl]).reals(deformation);
+    for known in [totals.dissipated, totals.angular_momentum, totals.max_drift] {
+        to.flag(known.is_some()).real(known.unwrap_or(0.0));
+    }
+}
+
+fn restored_totals(from: &mut Saved) -> Result<Totals> {
+    from.count()?;
+    let [kinetic, strain, one, two, min_j, max_curl] = from.array()?;
+    from.count()?;
+    let (deformation, mut known) = (from.array()?, [None; 3]);
+    for known in &mut known {
+        let (is_known, value) = (from.flag()?, from.real()?);
+        *known = is_known.then_some(value);
+    }
+    let [dissipated, angular_momentum, max_drift] = known;
+    let momentum = [one, two];
+    Ok(Totals { kinetic, strain, dissipated, momentum, angular_momentum, deformation, min_j, max_curl, max_drift })
+}
+
+fn save_balance(balance: &Balance, to: &mut Words) {
+    let Balance { start, energy, boundary_work, source_work, flux_dissipation, boundary_dissipation, .. } = *balance;
+    let Balance { curl_dissipation, correction_dissipation, regrid_dissipation, jumps, .. } = *balance;
+    to.reals(&[start, energy, boundary_work, source_work, flux_dissipation, boundary_dissipation]);
+    to.reals(&[curl_dissipation, correction_dissipation, regrid_dissipation, jumps]);
+}
+
+fn restored_balance(from: &mut Saved) -> Result<Balance> {
+    from.count()?;
+    let [start, energy, boundary_work, source_work, flux_dissipation, boundary_dissipation] = from.array()?;
+    from.count()?;
+    let [curl_dissipation, correction_dissipation, regrid_dissipation, jumps] = from.array()?;
+    Ok(Balance {
+        start,
+        energy,
+        boundary_work,
+        source_work,
+        flux_dissipation,
+        boundary_dissipation,
+        curl_dissipation,
+        correction_dissipation,
+        regrid_dissipation,
+        jumps,
+    })
+}
