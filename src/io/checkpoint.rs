@@ -2,7 +2,8 @@
 //!
 //! The arrays are those of a snapshot, and `part_<name>` with the numbers of whatever lives on beside the state
 //! ([`crate::words::Words`]): survey, report, rules of regrids, observers. The text of the scene is such a part.
-//! Attributes: those of a snapshot; `kernel`, the instruction set; `observed`, whether outputs have seen the state. A checkpoint has a seal, or is refused.
+//! Attributes: those of a snapshot; `kernel`, the instruction set; `observed`, whether outputs have seen
+//! the state; `has_snapshot`, whether there was a snapshot of it. A checkpoint has a seal, or is refused.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -21,6 +22,7 @@ const REMEDY: &str = "resume from an older checkpoint, or run the scene again wi
 const PART: &str = "part_";
 /// The part of the scene.
 const SCENE: &str = "scene";
+const YES: &str = "yes";
 /// How many are kept.
 const KEPT: usize = 2;
 
@@ -35,6 +37,8 @@ pub struct Checkpoint {
     pub kernel: String,
     /// Whether outputs have seen the state: the run has changed its grid since.
     pub observed: bool,
+    /// Whether there was a snapshot of it already.
+    pub has_snapshot: bool,
     /// The numbers of what lives on, by its name.
     pub parts: BTreeMap<String, Words>,
 }
@@ -46,8 +50,12 @@ impl Checkpoint {
     /// A file that cannot be written.
     pub fn write(&self, folder: &Path) -> Result<PathBuf> {
         let path = snapshot::path(folder, self.snapshot.step);
-        let attributes =
-            vec![("kernel", self.kernel.clone()), ("observed", if self.observed { "yes" } else { "no" }.to_owned())];
+        let word = |is: bool| if is { YES } else { "no" }.to_owned();
+        let attributes = vec![
+            ("kernel", self.kernel.clone()),
+            ("observed", word(self.observed)),
+            ("has_snapshot", word(self.has_snapshot)),
+        ];
         let mut scene = Words::default();
         scene.text(&self.scene);
         let all = self.parts.iter().map(|(name, words)| (&name[..], words)).chain([(SCENE, &scene)]);
@@ -72,7 +80,9 @@ impl Checkpoint {
             return Err(fail("the file is damaged: its bytes are not those that were written"));
         }
         let mut store = Store::read(path, FORMAT)?;
-        let [kernel, observed] = ["kernel", "observed"].map(|name| store.attribute(name).map(str::to_owned));
+        let kernel = store.attribute("kernel")?.to_owned();
+        let [observed, has_snapshot] =
+            ["observed", "has_snapshot"].map(|name| store.attribute(name).map(|is| is == YES));
         let names: Vec<String> = store.names().filter_map(|name| name.strip_prefix(PART)).map(str::to_owned).collect();
         let mut parts = BTreeMap::new();
         for name in names {
@@ -81,7 +91,7 @@ impl Checkpoint {
         }
         let snapshot = Snapshot::take(&mut store)?;
         let scene = parts.remove(SCENE).unwrap_or_default().saved().text()?;
-        Ok(Self { snapshot, scene, kernel: kernel?, observed: observed? == "yes", parts })
+        Ok(Self { snapshot, scene, kernel, observed: observed?, has_snapshot: has_snapshot?, parts })
     }
 }
 

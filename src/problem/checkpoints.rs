@@ -4,7 +4,7 @@ use super::Body;
 use crate::error::{Error, Result};
 use crate::io::checkpoint::Checkpoint;
 use crate::io::pending;
-use crate::io::snapshot::{GridFiles, Snapshot};
+use crate::io::snapshot::{self, GridFiles, Snapshot};
 use crate::observe;
 use crate::run::{Folder, Keep, Moment};
 use crate::scene::{self, Scene};
@@ -96,13 +96,13 @@ impl Keep for OnGrid<'_, '_> {
     fn keep(&mut self, moment: &Moment) -> Result<()> {
         let own = &mut *self.checkpoints;
         pending::check_folder(&own.folder.root)?;
-        let snapshot = observe::take(moment.scheme, moment.state);
         self.body.keep(own.folder, self.files)?;
         let checkpoint = Checkpoint {
-            snapshot: Snapshot { grid: self.files.clone(), ..snapshot },
+            snapshot: Snapshot { grid: self.files.clone(), ..observe::take(moment.scheme, moment.state) },
             scene: own.scene.clone(),
             kernel: moment.scheme.kernel.name().to_owned(),
             observed: own.observed == Some(moment.state.step),
+            has_snapshot: snapshot::path(&own.folder.snapshots(), moment.state.step).exists(),
             parts: moment.parts.iter().cloned().collect(),
         };
         checkpoint.write(&own.folder.checkpoints())?;

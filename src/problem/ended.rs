@@ -6,9 +6,10 @@ use crate::error::{Error, Result};
 use crate::io::{pending, snapshot};
 use crate::observe;
 use crate::run::{Folder, Report, Stop};
+use crate::state::State;
 use crate::step::EnergyMade;
 use serde_json::Value;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// How a run ended.
 pub struct Ended {
@@ -33,7 +34,9 @@ impl Ended {
         };
         // A folder that was removed is not made anew.
         let written = pending::check_folder(&folder.snapshots()).and_then(|()| problem.keep_files(folder));
-        let file = written.and_then(|()| observe::write(scheme, good, files, &folder.snapshots()));
+        let file = written.and_then(|()| {
+            kept_snapshot(&stop, good, &folder.snapshots(), |to| observe::write(scheme, good, files, to))
+        });
         let ended = |status, error| Self { status, loss: None, result: Err(error) };
         match stop {
             Stop::Output(error) => ended("failed", error),
@@ -53,6 +56,20 @@ impl Ended {
                 Self { status, loss, result: Err(error) }
             }
         }
+    }
+}
+
+/// The snapshot of the state that is kept. Where an output has written one of the step at which a run was interrupted, it stays.
+fn kept_snapshot(
+    stop: &Stop,
+    state: &State,
+    folder: &Path,
+    write: impl FnOnce(&Path) -> Result<PathBuf>,
+) -> Result<PathBuf> {
+    let there = snapshot::path(folder, state.step);
+    match stop {
+        Stop::Interrupted if there.exists() => Ok(there),
+        _ => write(folder),
     }
 }
 

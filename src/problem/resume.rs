@@ -58,7 +58,7 @@ impl Newest {
     /// # Errors
     /// A scene in which a key differs that may not; files of the folder that are not those of the run; a run that is at its end.
     pub fn problem(self, folder: &Folder, sets: &[String], kernel: Option<Kernel>) -> Result<Problem> {
-        let Checkpoint { snapshot, scene: text, kernel: name, observed, parts } = self.checkpoint;
+        let Checkpoint { snapshot, scene: text, kernel: name, observed, has_snapshot, parts } = self.checkpoint;
         let (old, scene) = (Scene::parse(&text, &folder.scene(), &[])?, Scene::load(&folder.scene(), sets)?);
         if let Some(what) = difference(&old, &scene) {
             let remedy = "only title, time.end, [watch] and [checkpoint] may change; for another scene use `dgmpm run`";
@@ -81,7 +81,7 @@ impl Newest {
             scene.state_of(&snapshot, scheme)
         })?;
         let observed_at = observed.then_some(snapshot.step);
-        folder.cut_back(snapshot.step + usize::from(observed))?;
+        folder.cut_back(snapshot.step, observed && has_snapshot)?;
         if !sets.is_empty() {
             pending::write_text(&folder.scene(), &scene.to_toml())?;
         }

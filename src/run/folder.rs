@@ -173,14 +173,15 @@ impl Folder {
         }
     }
 
-    /// Removes the snapshots of a run from a step on, grids that came in later, and the summary: a run that goes on makes them anew.
+    /// Removes the snapshots of a run from a step on (behind it `with_snapshot`, where that of the step stays), grids that came in later, and the summary: a run that goes on makes them anew.
     ///
     /// # Errors
     /// A file that cannot be removed.
-    pub fn cut_back(&self, step: usize) -> Result<(), Error> {
+    pub fn cut_back(&self, step: usize, with_snapshot: bool) -> Result<(), Error> {
         self.remove_parts();
         for name in self.results() {
-            let first = if name.starts_with("snapshots/") { step } else { step + 1 };
+            // A grid at the step is the one that the run goes on with.
+            let first = if name.starts_with("snapshots/") && !with_snapshot { step } else { step + 1 };
             if step_of(&name).is_some_and(|of| of >= first) || name == SUMMARY {
                 let path = self.root.join(&name);
                 std::fs::remove_file(&path).map_err(|why| Error::output(&path, why))?;

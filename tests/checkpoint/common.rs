@@ -1,0 +1,177 @@
+//! Scenes, folders and what a run has written.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A small impact of S2T2 that changes its grid, with plasticity and outputs: some 60 steps.
+pub const SCENE: &str = r#"title = "small impact"
+mesh.rectangle = { size = [1.0, 0.5], cells = [4, 2] }
+boundary = [
+    { group = "left", kind = "unilateral", gap = 1e-3 },
+    { group = "bottom", kind = "symmetry" },
+    { group = "right", kind = "free" },
+    { group = "top", kind = "free" },
+]
+[[material]]
+law = "j2"
+young = 2e11
+poisson = 0.3
+density = 7800.0
+yield_stress = 4e8
+hardening = 1e9
+[initial]
+velocity = ["-200", "0"]
+[scheme]
+method = "ader-dgmpm"
+degree = 2
+[checkpoint]
+every_steps = 3
+[time]
+end = 1.2e-4
+[[output]]
+kind = "fields"
+every = 2e-5
+[[output]]
+kind = "ledger"
+[[output]]
+kind = "line"
+name = "bottom"
+from = [0.0, 0.0]
+to = [1.0, 0.0]
+samples = 5
+every_steps = 3
+[[output]]
+kind = "probe"
+name = "corner"
+point = [1.0, 0.5]
+[[output]]
+kind = "force"
+name = "walls"
+every_steps = 2
+[[output]]
+kind = "extreme"
+name = "peak"
+field = "von_mises"
+[[output]]
+kind = "energy"
+name = "energies"
+[[quantity]]
+name = "mean_force"
+kind = "force"
+group = "left"
+over = "run"
+statistic = "mean"
+[[quantity]]
+name = "early"
+kind = "value"
+field = "velocity"
+component = "1"
+at = [1.0, 0.25]
+time = 5e-5
+[[regrid]]
+every = 5e-5
+refine = 2
+"#;
+
+/// A folder of its own, with the scene `case.toml`.
+pub struct Bench {
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    pub fn new() -> Self {
+        let bench = Self { folder: tempfile::tempdir().unwrap() };
+        std::fs::write(bench.path("case.toml"), SCENE).unwrap();
+        bench
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_dgmpm"));
+        command.args(arguments.split_whitespace()).current_dir(self.folder.path());
+        command
+    }
+
+    pub fn output(&self, arguments: &str) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    /// Runs a command that has to end with code 0; what it says.
+    pub fn run(&self, arguments: &str) -> String {
+        let output = self.output(arguments);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{arguments}: {errors}");
+        String::from_utf8_lossy(&output.stdout).into_owned() + &errors
+    }
+
+    /// Runs a command that has to end with this code; its message.
+    pub fn fail(&self, code: i32, arguments: &str) -> String {
+        let output = self.output(arguments);
+        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{arguments}: {errors}");
+        let messages = errors.lines().filter(|line| line.starts_with("error: ")).count();
+        assert_eq!(messages, 1, "one message: {errors}");
+        errors
+    }
+}
+
+/// What a run has written, by file: the numbers that do not depend on clocks. Checkpoints and matrices are no results.
+pub fn results(root: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut out = BTreeMap::new();
+    let mut folders = vec![root.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.strip_prefix(root).unwrap().to_str().unwrap().to_owned();
+            let bytes = || std::fs::read(&path).unwrap();
+            match &name[..] {
+                "checkpoints" | "operators.h5" | ".dgmpm" => {}
+                _ if path.is_dir() => folders.push(path),
+                "summary.json" => drop(out.insert(name, without_clocks(&bytes()))),
+                "regrid.csv" => drop(out.insert(name, first_columns(&bytes(), 12))),
+                _ => drop(out.insert(name, bytes())),
+            }
+        }
+    }
+    out
+}
+
+/// Without seconds, memory and threads.
+fn without_clocks(text: &[u8]) -> Vec<u8> {
+    let all: serde_json::Value = serde_json::from_slice(text).unwrap();
+    let clock =
+        |key: &str| ["second", "phases", "memory", "threads", "effects", "bytes"].iter().any(|word| key.contains(word));
+    let kept = all.as_object().unwrap().iter().filter(|(key, _)| !clock(key));
+    kept.map(|(key, value)| format!("{key}: {value}\n")).collect::<String>().into_bytes()
+}
+
+/// The first columns of a table; behind them `regrid.csv` has seconds.
+fn first_columns(text: &[u8], count: usize) -> Vec<u8> {
+    let line = |line: &str| line.split(',').take(count).collect::<Vec<_>>().join(",") + "\n";
+    String::from_utf8_lossy(text).lines().map(line).collect::<String>().into_bytes()
+}
+
+/// Whether two runs have the same results, to the byte.
+pub fn assert_same(name: &str, one: &Path, two: &Path) {
+    let (one, two) = (results(one), results(two));
+    assert_eq!(one.keys().collect::<Vec<_>>(), two.keys().collect::<Vec<_>>(), "{name}: other files");
+    let differs: Vec<&String> =
+        one.iter().filter(|(file, bytes)| two[*file] != **bytes).map(|(file, _)| file).collect();
+    let texts =
+        |all: &BTreeMap<String, Vec<u8>>| differs.first().map(|f| String::from_utf8_lossy(&all[*f]).into_owned());
+    assert!(differs.is_empty(), "{name}: {differs:?} differ\n{:?}\n{:?}", texts(&one), texts(&two));
+}
+
+/// Copies a folder with what is below it.
+pub fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        if path.is_dir() { copy(&path, &target) } else { assert!(std::fs::copy(&path, &target).is_ok()) }
+    }
+}

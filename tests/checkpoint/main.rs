@@ -1,0 +1,9 @@
+//! Runs that are stopped, killed or full of faults: they go on to the same bits, or say in one message why they do not.
+
+#[path = "../bodies/mod.rs"]
+mod bodies;
+mod bits;
+mod common;
+mod faults;
+mod folders;
+mod signals;
