@@ -20,6 +20,7 @@ pub mod operators_file;
 pub mod pending;
 pub mod points;
 pub mod pvd;
+pub mod regular;
 pub mod seal;
 pub mod snapshot;
 pub mod store;

@@ -3,6 +3,11 @@
 //! Numbers have 64 bits and are written inline as base64, not compressed. The compressing writer of `vtkio` 0.7.0-rc2
 //! adds an empty block to an array whose bytes are a multiple of the block; VTK then reads this block as a full one.
 
+mod decode;
+mod read;
+
+pub use read::points;
+
 use std::path::Path;
 
 use vtkio::model::{Attribute, Attributes, ByteOrder, CellType, Cells, UnstructuredGridPiece, Version, VertexNumbers};
@@ -11,6 +16,7 @@ use vtkio::xml::Compressor;
 
 use super::grid::{Field, HighOrderGrid, PointCloud};
 use super::pending::write_text;
+use super::seal;
 use crate::error::{Error, Result};
 
 /// Writes a grid: Lagrange quadrilaterals (VTK type 70) of degree N, bilinear ones (type 9) for N = 0 and 1.
@@ -61,5 +67,5 @@ fn write(path: &Path, piece: UnstructuredGridPiece) -> Result<()> {
     // vtkio marks indices as unsigned, and meshio cannot compute with unsigned indices; below 2^63 the bytes are the same.
     // Only an attribute can hold a quote, so this changes nothing else.
     let text = xml.to_string().replace(" type=\"UInt64\"", " type=\"Int64\"");
-    write_text(path, &format!("<?xml version=\"1.0\"?>\n{text}\n"))
+    write_text(path, &seal::text(&format!("<?xml version=\"1.0\"?>\n{text}\n"), seal::XML))
 }

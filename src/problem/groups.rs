@@ -9,8 +9,9 @@ impl Scene {
     /// The mesh cut along the edges inside of the body that bear a condition, its groups checked.
     ///
     /// # Errors
-    /// As [`Scene::check_mesh`]; a cut that cannot open.
+    /// As [`Scene::check_mesh`]; a cut that cannot open; a cell that is inverted, collapsed or not finite, whoever made the mesh.
     pub fn cut_mesh(&self, mesh: Mesh) -> Result<Mesh> {
+        mesh.check()?;
         let of_scene = |name: &String| {
             let own = self.boundaries.iter().filter(|boundary| !boundary.is_joined());
             own.flat_map(Boundary::groups).any(|group| group == name)

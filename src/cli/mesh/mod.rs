@@ -7,7 +7,7 @@ use super::print::{note, say, table};
 use crate::error::{Error, Result};
 use crate::io::{read_mesh, write_mesh};
 use crate::mesh::{Link, Mesh, links, rectangle};
-use crate::problem::notices;
+use crate::problem::{notices, room::check_mesh};
 use args::{Action, To};
 use std::path::Path;
 
@@ -24,7 +24,8 @@ pub fn run(args: &Args) -> Result<()> {
         (Some(Action::Rectangle { size, cells, to }), _) => {
             let pair = |what| Error::input(format!("{what} wants two numbers"), "for example --size 3,3 --cells 30,30");
             let size = size[..].try_into().map_err(|_| pair("--size"))?;
-            let cells = cells[..].try_into().map_err(|_| pair("--cells"))?;
+            let cells: [usize; 2] = cells[..].try_into().map_err(|_| pair("--cells"))?;
+            check_mesh(cells[0].saturating_mul(cells[1]))?;
             write(&rectangle(size, cells)?, to, Path::new("rectangle.h5"))
         }
         (None, Some(file)) => write(&read_mesh(file)?, &args.to, &file.with_extension("h5")),
