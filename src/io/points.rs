@@ -11,6 +11,9 @@ use crate::error::{Error, Place, Result};
 /// What a file of points must be, for messages.
 const REMEDY: &str = "give a VTU file with its points in m, or rows x, y in m";
 
+/// Columns beyond which rows are refused: the parts of a tensor are looked for by name among all of them.
+const COLUMNS: usize = 1000;
+
 /// Largest |z| that counts as 0, relative to the largest coordinate: it allows for rounding in a rotated plane.
 const FLAT: f64 = 1e-10;
 
@@ -77,6 +80,10 @@ pub fn of_rows(text: &str, path: &Path) -> Result<Found> {
         } else {
             let row = numbers_of(&words, &names, count.filter(|_| names.is_empty())).map_err(fault)?;
             numbers.extend(row);
+        }
+        if words.len() > COLUMNS {
+            let what = format!("the row has {} entries, and {COLUMNS} are the most that are read", words.len());
+            return Err(fault((what, "give x, y and the fields that are needed")));
         }
         if words.len() < 2 {
             return Err(fault(("this is not a point".to_owned(), "give x, y in m")));

@@ -73,7 +73,8 @@ fn in_folder(
     })?;
     if !run.status.success() {
         let said = String::from_utf8_lossy(&run.stderr);
-        return Err(fault(format!("gmsh failed ({}): {}", run.status, said.lines().next().unwrap_or_default())));
+        let line = said.lines().find(|line| line.contains("rror")).or(said.lines().next()).unwrap_or_default();
+        return Err(fault(format!("gmsh failed ({}): {line}", run.status)));
     }
     crate::io::read_mesh(&out).map_err(fault)
 }

@@ -14,8 +14,10 @@ use crate::io::grid::{Field, Kind};
 const DEPTH: usize = 16;
 /// Attributes of an element beyond which a file is refused; VTK writes up to 9.
 const ATTRIBUTES: usize = 32;
-/// Elements beyond which a file is refused: a thousand fields in a hundred pieces.
-const ELEMENTS: usize = 100_000;
+/// Elements beyond which a file is refused: a hundred fields in a hundred pieces.
+const ELEMENTS: usize = 20_000;
+/// Fields beyond which a file is refused: each is looked for by its name in each piece.
+const FIELDS: usize = 1000;
 
 /// Points with their fields.
 type Found = (Vec<[f64; 3]>, Vec<Field>);
@@ -69,8 +71,10 @@ pub fn points(bytes: &[u8]) -> Result<Found, String> {
         }
         let kinds = [Kind::Scalar, Kind::Vector, Kind::Tensor];
         let Some(kind) = kinds.into_iter().find(|kind| kind.components() == array.components) else { continue };
+        let known = fields.len();
         match fields.iter_mut().find(|field| field.name == array.name) {
             Some(field) => field.values.extend(values),
+            None if known == FIELDS => return Err(format!("it has more than {FIELDS} fields")),
             None => fields.push(Field::new(&array.name, kind, values)),
         }
     }
