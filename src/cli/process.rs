@@ -2,7 +2,7 @@
 
 use super::{Cli, print};
 use crate::error::Result;
-use crate::io::seal;
+use crate::file::seal;
 use clap::Parser;
 use std::process::ExitCode;
 

@@ -28,8 +28,7 @@ use toml_edit::{Document, DocumentMut};
 
 use crate::error::{Error, Place, Result};
 use crate::expression::Expression;
-use crate::io::regular;
-use crate::io::seal::{self, Seal};
+use crate::file::seal::{self, Seal};
 use crate::registry::controls::Control;
 use crate::registry::{self, Chosen, Method, Sweeps, limiters};
 pub use names::Histories;
@@ -265,7 +264,7 @@ impl Scene {
     /// Reads a scene file and applies overrides `key.path=value`.
     pub fn load(path: &Path, sets: &[String]) -> Result<Self> {
         let whole = |what: String, remedy: &str| Error::at(Place::file(path), what, remedy);
-        let bytes = regular::bytes(path, LARGEST)
+        let bytes = crate::file::bytes(path, LARGEST)
             .map_err(|why| whole(format!("cannot read the scene: {why}"), "give the path of a scene file (.toml)"))?;
         if seal::check_text(&bytes) == Seal::Broken {
             let what = "the scene is not as it was written: a byte is damaged, or someone has changed it";

@@ -2,7 +2,7 @@
 //! appended, as text, base64 or raw bytes, not compressed or by zlib.
 //!
 //! Only the points and their data are read. No file makes this part panic, or take memory or time out of proportion to its
-//! bytes: the reader of `vtkio` does (an element of 100 000 attributes takes it half a minute), and it is used for writing alone.
+//! bytes.
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};

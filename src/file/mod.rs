@@ -1,4 +1,7 @@
-//! Input files as a whole: regular files alone, since a device never ends and a pipe may never begin.
+//! Input files as a whole: regular files alone, since a device never ends and a pipe may never begin; and the checksums of
+//! files ([`seal`]).
+
+pub mod seal;
 
 use std::fs::{self, Metadata};
 use std::path::Path;
