@@ -36,8 +36,8 @@ use origin::{Origin, Part};
 pub use quantities::MEASURES;
 pub use reference::reference;
 
-/// Bytes of the largest scene that is read: a hundred times the largest that anyone has written, and parsed in a second.
-const LARGEST: u64 = 4 << 20;
+/// Bytes of the largest scene that is read: a hundred times those of `meshes/`. A byte may take 200 of memory while it is parsed.
+const LARGEST: u64 = 1 << 19;
 
 /// A whole scene.
 #[derive(Debug, Clone, Serialize)]

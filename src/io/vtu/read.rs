@@ -156,8 +156,11 @@ impl Document {
     /// Looks at an element that begins here.
     fn open(&mut self, element: &BytesStart) -> Result<(), String> {
         self.elements += 1;
-        if self.elements > ELEMENTS || self.path.len() >= DEPTH {
-            return Err(format!("it has more than {ELEMENTS} elements, or more than {DEPTH} within each other"));
+        if self.elements > ELEMENTS {
+            return Err(format!("it has more than {ELEMENTS} elements"));
+        }
+        if self.path.len() >= DEPTH {
+            return Err(format!("it has more than {DEPTH} elements within each other"));
         }
         let name = element.name();
         let name = name.as_ref();

@@ -16,9 +16,9 @@ pub(super) fn finer(of: &Values, rule: &dyn Rule, present: &Present) -> Result<M
     let cells = mesh.cells.len().saturating_mul(k * k);
     if cells / MOST > present.start {
         let what = format!(
-            "step {}: {cells} cells would be more than {MOST} times the {} of the start; `refine` cuts the cells that are \
-             there each time that it is due",
-            present.view.state.step, present.start
+            "{cells} cells would be more than {MOST} times the {} of the start; `refine` cuts the cells that are there each \
+             time that it is due",
+            present.start
         );
         return Err(rule.wrong("refine", what, "let it be due less often (`at`), join cells by `coarsen` between, or start finer"));
     }
