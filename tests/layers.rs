@@ -300,9 +300,13 @@ fn is_allowed(licence: &str, known: &dyn Fn(&str) -> bool) -> bool {
 #[test]
 fn a_licence_is_allowed_by_one_of_each_choice() {
     let known = |one: &str| ["MIT", "Zlib"].contains(&one);
-    for (licence, holds) in
-        [("MIT", true), ("GPL-3.0", false), ("MIT/GPL-3.0", true), ("(MIT OR X) AND Y", false), ("(X OR MIT) AND Zlib", true)]
-    {
+    for (licence, holds) in [
+        ("MIT", true),
+        ("GPL-3.0", false),
+        ("MIT/GPL-3.0", true),
+        ("(MIT OR X) AND Y", false),
+        ("(X OR MIT) AND Zlib", true),
+    ] {
         assert_eq!(is_allowed(licence, &known), holds, "{licence}");
     }
 }

@@ -49,11 +49,6 @@ pub enum Values {
     Text(Vec<String>),
 }
 
-/// Creates a file by `fill`. The file appears whole, or not at all.
-pub fn create(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<()> {
-    fill_pending(path, fill)?.commit()
-}
-
 /// Creates a file by `fill`, with a seal that shows later damage. The file appears whole, or not at all.
 pub fn create_sealed(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<()> {
     let pending = fill_pending(path, fill)?;
@@ -188,7 +183,8 @@ impl Reader {
             return Err(fail("not a whole HDF5 file: it does not begin as one".to_owned()));
         }
         if seal == Seal::None && !seal::is_trusted() {
-            let what = "the file has no seal of dgmpm: it was cut off, was changed by another program, or is not of dgmpm";
+            let what =
+                "the file has no seal of dgmpm: it was cut off, was changed by another program, or is not of dgmpm";
             let remedy = format!("{remedy}, or give --trust if you know that its writer means no harm");
             return Err(Error::at(place, what, remedy));
         }
@@ -255,7 +251,9 @@ impl Reader {
         let plan = dataset.dcpl().map_err(fail)?;
         let outside = !plan.get_external().map_err(fail)?.is_empty();
         match outside || plan.get_layout().map_err(fail)? == Layout::Virtual {
-            true => Err(self.error(format!("array `{name}` takes its numbers from other files, which are not followed"))),
+            true => {
+                Err(self.error(format!("array `{name}` takes its numbers from other files, which are not followed")))
+            }
             false => Ok(()),
         }
     }
@@ -274,8 +272,12 @@ impl Reader {
 
     fn texts(&self, name: &str, dataset: &h5::Dataset, kind: &TypeDescriptor) -> Result<Vec<String>> {
         let bytes = match kind {
-            TypeDescriptor::FixedUnicode(0..=SHORT) | TypeDescriptor::FixedAscii(0..=SHORT) => fixed_bytes::<SHORT>(dataset),
-            TypeDescriptor::FixedUnicode(..=MIDDLE) | TypeDescriptor::FixedAscii(..=MIDDLE) => fixed_bytes::<MIDDLE>(dataset),
+            TypeDescriptor::FixedUnicode(0..=SHORT) | TypeDescriptor::FixedAscii(0..=SHORT) => {
+                fixed_bytes::<SHORT>(dataset)
+            }
+            TypeDescriptor::FixedUnicode(..=MIDDLE) | TypeDescriptor::FixedAscii(..=MIDDLE) => {
+                fixed_bytes::<MIDDLE>(dataset)
+            }
             TypeDescriptor::FixedUnicode(..=LONG) | TypeDescriptor::FixedAscii(..=LONG) => fixed_bytes::<LONG>(dataset),
             // As this program wrote texts once.
             TypeDescriptor::VarLenUnicode if self.sealed => {

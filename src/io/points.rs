@@ -49,7 +49,11 @@ fn vtu(path: &Path) -> Result<Found> {
     let bytes = regular::bytes(path, u64::MAX).map_err(fault)?;
     if seal::check_text(&bytes) == Seal::Broken {
         let what = "the file is damaged: its bytes are not those that were written";
-        return Err(Error::at(Place::file(path), what, "export it again; if you have changed it, remove its last line"));
+        return Err(Error::at(
+            Place::file(path),
+            what,
+            "export it again; if you have changed it, remove its last line",
+        ));
     }
     let (points, fields) = vtu::points(&bytes).map_err(fault)?;
     let size = points.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));

@@ -62,7 +62,10 @@ fn texts(bench: &Bench, add: &mut impl FnMut(&str, Vec<u8>)) {
     let attributes: String = (0..100_000).map(|k| format!(" a{k}=\"1\"")).collect();
     add("many_attributes.vtu", format!("<VTKFile{attributes}>").into_bytes());
     let good = std::fs::read_to_string(bench.path("good.vtu")).unwrap();
-    add("many_attributes_within.vtu", good.replace("<Points>", &format!("<Points>\n<DataArray{attributes}/>")).into_bytes());
+    add(
+        "many_attributes_within.vtu",
+        good.replace("<Points>", &format!("<Points>\n<DataArray{attributes}/>")).into_bytes(),
+    );
     add("deep.vtu", good.replace("<Points>", &"<a>".repeat(300_000)).into_bytes());
     add("many_elements.vtu", good.replace("<Points>", &"<a/>".repeat(300_000)).into_bytes());
 }
@@ -110,7 +113,14 @@ fn special(bench: &Bench, cases: &mut Vec<(String, Vec<String>)>) {
     let made = std::process::Command::new("mkfifo").arg(bench.path("pipe.msh")).status().unwrap();
     assert!(made.success());
     let names = [
-        "folder.msh", "folder.toml", "dangling.msh", "loop.toml", "endless.toml", "endless.csv", "endless.vtu", "endless.h5",
+        "folder.msh",
+        "folder.toml",
+        "dangling.msh",
+        "loop.toml",
+        "endless.toml",
+        "endless.csv",
+        "endless.vtu",
+        "endless.h5",
         "pipe.msh",
     ];
     cases.extend(names.map(|name| (name.to_owned(), arguments(name))));

@@ -101,7 +101,8 @@ fn arguments(file: &str) -> Vec<String> {
 const GOOD: [&str; 3] = ["good.toml", "good.vtu", "two_bodies_mesh.msh"];
 
 /// Scenes that name the file at fault.
-const OTHERS: [(&str, &str); 2] = [("device_for_a_mesh.toml", "error: /dev/zero: "), ("folder_for_a_mesh.toml", "error: .: ")];
+const OTHERS: [(&str, &str); 2] =
+    [("device_for_a_mesh.toml", "error: /dev/zero: "), ("folder_for_a_mesh.toml", "error: .: ")];
 
 #[test]
 fn each_bad_file_has_its_message() {

@@ -137,7 +137,6 @@ impl Document {
         }
     }
 
-
     /// Whether a text stands in the last array that was begun.
     fn is_in_array(&self) -> bool {
         self.path.len() == 5 && self.path[4] == b"DataArray" && self.section(&self.path[..4]).is_some()
@@ -170,7 +169,9 @@ impl Document {
         if name == b"Piece" && self.path.len() == 2 {
             let points = attribute(element, "NumberOfPoints")?.ok_or("a piece does not say its NumberOfPoints")?;
             self.points = points.trim().parse().map_err(|_| format!("NumberOfPoints is `{points}`, not a number"))?;
-        } else if name == b"DataArray" && let Some(is_place) = self.section(&self.path) {
+        } else if name == b"DataArray"
+            && let Some(is_place) = self.section(&self.path)
+        {
             let array = self.array(element, is_place)?;
             self.arrays.push(array);
         }

@@ -20,7 +20,11 @@ pub(super) fn finer(of: &Values, rule: &dyn Rule, present: &Present) -> Result<M
              time that it is due",
             present.start
         );
-        return Err(rule.wrong("refine", what, "let it be due less often (`at`), join cells by `coarsen` between, or start finer"));
+        return Err(rule.wrong(
+            "refine",
+            what,
+            "let it be due less often (`at`), join cells by `coarsen` between, or start finer",
+        ));
     }
     rule.has_room("refine", cells)?;
     Ok(mesh.refined(k))

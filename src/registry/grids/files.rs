@@ -53,7 +53,8 @@ pub fn copy_text(from: &Path, to: &Path, comment: [&str; 2]) -> Result<()> {
     if is_same(from, to) {
         return Ok(());
     }
-    let text = regular::text(from, LARGEST_TEXT).map_err(|why| Error::at(Place::file(from), why, "give a text file"))?;
+    let text =
+        regular::text(from, LARGEST_TEXT).map_err(|why| Error::at(Place::file(from), why, "give a text file"))?;
     write_text(to, &seal::text(&text, comment))
 }
 
