@@ -7,6 +7,7 @@
 mod damage;
 mod links;
 mod made;
+mod mutated;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

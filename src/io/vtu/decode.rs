@@ -271,6 +271,30 @@ mod tests {
     }
 
     #[test]
+    fn blocks_of_zlib_follow_each_other_and_their_header_may_be_encoded_apart() {
+        use base64::{Engine, engine::general_purpose::STANDARD};
+        use std::io::Write;
+        let values = [1.5, -2.25, 3.0, 1e300, 0.1];
+        let bytes: Vec<u8> = values.iter().flat_map(|x: &f64| x.to_le_bytes()).collect();
+        let packed = |part: &[u8]| {
+            let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::default());
+            encoder.write_all(part).unwrap();
+            encoder.finish().unwrap()
+        };
+        // Blocks of 16 bytes, the last of 8.
+        let blocks: Vec<Vec<u8>> = bytes.chunks(16).map(packed).collect();
+        let lengths = blocks.iter().map(|block| block.len() as u32);
+        let header: Vec<u8> = [3, 16, 8].into_iter().chain(lengths).flat_map(u32::to_le_bytes).collect();
+        let zlib = Coding { zlib: true, ..Coding::default() };
+        let all = [header.clone(), blocks.concat()].concat();
+        assert_eq!(zlib.raw(&all, Number::Real(8), 5).unwrap(), values);
+        // As VTK and meshio do.
+        let text = STANDARD.encode(header) + &STANDARD.encode(blocks.concat());
+        assert_eq!(zlib.base64(text.as_bytes(), Number::Real(8), 5).unwrap(), values);
+        assert!(zlib.base64(text.as_bytes(), Number::Real(8), 4).unwrap_err().contains("more than the 32 bytes"));
+    }
+
+    #[test]
     fn a_compressed_array_that_claims_too_much_is_refused_without_the_memory() {
         let zlib = Coding { zlib: true, ..Coding::default() };
         let bytes = [u32::MAX, 1 << 15, 0, 7].map(u32::to_le_bytes).concat();
