@@ -28,9 +28,13 @@ echo "AddressSanitizer, all paths that this processor has:"
 RUSTFLAGS=-Zsanitizer=address cargo +nightly test --lib --target "$target"
 if cargo +nightly miri --version >/dev/null 2>&1; then
     # A hundred times slower: without the tests that go through 200 000 numbers.
+    export PROPTEST_CASES=8 MIRIFLAGS=-Zmiri-disable-isolation
     echo "Miri, the portable path:"
-    PROPTEST_CASES=8 MIRIFLAGS=-Zmiri-disable-isolation \
-        cargo +nightly miri test --lib --target "$target" -- joined picked all_paths counted dual
+    cargo +nightly miri test --lib --target "$target" -- joined picked all_paths counted dual
+    if [ "${target%%-*}" = x86_64 ]; then
+        echo "Miri, the path of AVX2 (it does not know all of AVX-512):"
+        RUSTFLAGS="-Ctarget-feature=+avx2,+fma" cargo +nightly miri test --lib --target "$target" -- joined picked all_paths
+    fi
 else
     echo "skipped: Miri is not installed (rustup +nightly component add miri rust-src)"
 fi

@@ -109,8 +109,8 @@ const LONG: usize = 4096;
 /// Writes a list of texts, of a fixed length.
 pub fn put_texts(group: &h5::Group, name: &str, texts: &[String]) -> h5::Result<()> {
     match texts.iter().map(String::len).max().unwrap_or(0) {
-        0..=SHORT => put_fixed::<SHORT>(group, name, texts),
-        ..=MIDDLE => put_fixed::<MIDDLE>(group, name, texts),
+        length if length <= SHORT => put_fixed::<SHORT>(group, name, texts),
+        length if length <= MIDDLE => put_fixed::<MIDDLE>(group, name, texts),
         _ => put_fixed::<LONG>(group, name, texts),
     }
 }
@@ -124,8 +124,12 @@ fn put_fixed<const N: usize>(group: &h5::Group, name: &str, texts: &[String]) ->
 /// Writes a text attribute, of a fixed length.
 pub fn put_attribute(group: &h5::Group, name: &str, text: &str) -> h5::Result<()> {
     match text.len() {
-        0..=SHORT => group.new_attr::<FixedUnicode<SHORT>>().create(name)?.write_scalar(&fixed::<SHORT>(text)?),
-        ..=MIDDLE => group.new_attr::<FixedUnicode<MIDDLE>>().create(name)?.write_scalar(&fixed::<MIDDLE>(text)?),
+        length if length <= SHORT => {
+            group.new_attr::<FixedUnicode<SHORT>>().create(name)?.write_scalar(&fixed::<SHORT>(text)?)
+        }
+        length if length <= MIDDLE => {
+            group.new_attr::<FixedUnicode<MIDDLE>>().create(name)?.write_scalar(&fixed::<MIDDLE>(text)?)
+        }
         _ => group.new_attr::<FixedUnicode<LONG>>().create(name)?.write_scalar(&fixed::<LONG>(text)?),
     }
 }

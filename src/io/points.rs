@@ -57,8 +57,8 @@ fn vtu(path: &Path) -> Result<Found> {
     }
     let (points, fields) = vtu::points(&bytes).map_err(fault)?;
     let size = points.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
-    // Written so that NaN is an error too.
-    if let Some(k) = points.iter().position(|x| !(x[2].abs() <= FLAT * size)) {
+    // NaN is an error too.
+    if let Some(k) = points.iter().position(|x| x[2].is_nan() || x[2].abs() > FLAT * size) {
         return Err(fault(format!("point {} has z = {}, and the body lies in the plane z = 0", k + 1, points[k][2])));
     }
     Ok((points.into_iter().map(|[x, y, _]| [x, y]).collect(), fields))
