@@ -6,6 +6,7 @@
 
 mod given;
 mod groups;
+mod load;
 mod names;
 mod origin;
 mod outputs;
@@ -28,16 +29,12 @@ use toml_edit::{Document, DocumentMut};
 
 use crate::error::{Error, Place, Result};
 use crate::expression::Expression;
-use crate::file::seal::{self, Seal};
 use crate::registry::controls::Control;
 use crate::registry::{self, Chosen, Method, Sweeps, limiters};
 pub use names::Histories;
 use origin::{Origin, Part};
 pub use quantities::MEASURES;
 pub use reference::reference;
-
-/// Bytes of the largest scene that is read: a hundred times those of `meshes/`. A byte may take 200 of memory while it is parsed.
-const LARGEST: u64 = 1 << 19;
 
 /// A whole scene.
 #[derive(Debug, Clone, Serialize)]
@@ -261,23 +258,6 @@ pub enum When {
 }
 
 impl Scene {
-    /// Reads a scene file and applies overrides `key.path=value`.
-    pub fn load(path: &Path, sets: &[String]) -> Result<Self> {
-        let whole = |what: String, remedy: &str| Error::at(Place::file(path), what, remedy);
-        let bytes = crate::file::bytes(path, LARGEST)
-            .map_err(|why| whole(format!("cannot read the scene: {why}"), "give the path of a scene file (.toml)"))?;
-        if seal::check_text(&bytes) == Seal::Broken {
-            let what = "the scene is not as it was written: a byte is damaged, or someone has changed it";
-            return Err(whole(what.to_owned(), "if the change is yours, remove the last line, which has the hash"));
-        }
-        let text = String::from_utf8(bytes).map_err(|why| {
-            let good = why.utf8_error().valid_up_to();
-            let before = String::from_utf8_lossy(&why.as_bytes()[..good]).into_owned();
-            Origin::error_at_byte(path, &before, good, "this is not UTF-8 text".to_owned(), "save the scene as UTF-8")
-        })?;
-        Self::parse(seal::unsealed(text.strip_prefix('\u{feff}').unwrap_or(&text)), path, sets)
-    }
-
     /// Reads the text of a scene; `path` stands in messages, and relative paths start from its folder.
     pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Self> {
         let original = document(text, path)?;
