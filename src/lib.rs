@@ -68,14 +68,18 @@
 //! (`docs/extend.md`). The modules are private: what a user needs stands on the page of `pub use` below.
 
 #![deny(missing_docs)]
+// All `unsafe` is in `lane`, which has the one exception (`tests/layers.rs` holds this).
+#![deny(unsafe_code)]
 // Links to private modules are for those who work on the crate: `cargo doc --document-private-items`.
 #![allow(rustdoc::private_intra_doc_links)]
 
 #[macro_use]
 mod names;
 mod error;
+mod file;
 mod built;
 mod format;
+#[allow(unsafe_code)]
 mod lane;
 mod words;
 pub mod tensor;

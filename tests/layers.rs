@@ -193,7 +193,8 @@ fn no_files_of_a_folder_are_in_a_circle() {
 #[test]
 fn a_scene_uses_names_expressions_and_the_registry_only() {
     let used = uses_of_module("scene");
-    let allowed = ["error", "names", "expression", "registry", "scene"];
+    // `file`: its bytes, and whether they are whole.
+    let allowed = ["error", "file", "names", "expression", "registry", "scene"];
     let wrong: Vec<&String> = used.iter().filter(|name| !allowed.contains(&&name[..])).collect();
     assert!(wrong.is_empty() && used.contains("registry"), "scene uses {wrong:?}");
     assert!(uses_of_module("expression").is_subset(&["error", "names"].map(str::to_owned).into()));
@@ -213,6 +214,108 @@ fn every_folder_and_file_of_the_source_is_reached() {
 fn only_main_sees_the_command_line() {
     let lib = std::fs::read_to_string(source().join("lib.rs")).unwrap();
     assert_eq!(lib.lines().filter_map(declared).next_back(), Some("cli"));
+}
+
+/// All files of the source with their texts.
+fn all_files(folder: &Path) -> Vec<(PathBuf, String)> {
+    let mut files = Vec::new();
+    for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        match path.is_dir() {
+            true => files.extend(all_files(&path)),
+            false => files.push((path.clone(), std::fs::read_to_string(&path).unwrap())),
+        }
+    }
+    files
+}
+
+#[test]
+fn unsafe_code_is_in_lane_alone() {
+    let lib = std::fs::read_to_string(source().join("lib.rs")).unwrap();
+    assert!(lib.contains("\n#![deny(unsafe_code)]\n") && lib.contains("\n#[allow(unsafe_code)]\nmod lane;\n"));
+    let (mut exceptions, mut found) = (Vec::new(), 0);
+    for (file, text) in all_files(&source()) {
+        let lines = text.lines().filter(|line| line.contains("(unsafe_code)") && !line.trim_start().starts_with("//"));
+        exceptions.extend(lines.map(|line| (file.file_name().unwrap().to_owned(), line.trim().to_owned())));
+        found += usize::from(text.contains("unsafe {"));
+    }
+    exceptions.sort();
+    let lines: Vec<(&str, &str)> =
+        exceptions.iter().map(|(file, line)| (file.to_str().unwrap(), line.as_str())).collect();
+    let [only, denied, main] = ["#[allow(unsafe_code)]", "#![deny(unsafe_code)]", "#![forbid(unsafe_code)]"];
+    assert_eq!(lines, [("lib.rs", denied), ("lib.rs", only), ("main.rs", main)]);
+    // The search works: `lane` has such code.
+    assert!(found > 0);
+}
+
+#[test]
+fn every_crate_has_a_licence_and_a_source_that_deny_toml_allows() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let rules: toml_edit::DocumentMut = std::fs::read_to_string(root.join("deny.toml")).unwrap().parse().unwrap();
+    let list = |value: &toml_edit::Item| -> Vec<String> {
+        value.as_array().unwrap().iter().map(|text| text.as_str().unwrap().to_owned()).collect()
+    };
+    let allowed = list(&rules["licenses"]["allow"]);
+    let (mut more, mut refused) = (Vec::new(), Vec::new());
+    for entry in rules["licenses"]["exceptions"].as_array().unwrap() {
+        let entry = entry.as_inline_table().unwrap();
+        let names = entry["allow"].as_array().unwrap().iter().map(|text| text.as_str().unwrap().to_owned());
+        more.push((entry["crate"].as_str().unwrap().to_owned(), names.collect::<Vec<_>>()));
+    }
+    let told = metadata(root);
+    let packages = told["packages"].as_array().unwrap();
+    for package in packages {
+        let name = package["name"].as_str().unwrap();
+        let own = more.iter().find(|(known, _)| known == name).map_or(&[][..], |(_, names)| names);
+        let licence = package["license"].as_str().unwrap_or("none");
+        if !is_allowed(licence, &|one| allowed.iter().chain(own).any(|known| known == one)) {
+            refused.push(format!("{name}: licence {licence}"));
+        }
+        // None: the package itself.
+        if let Some(from) = package["source"].as_str()
+            && from != "registry+https://github.com/rust-lang/crates.io-index"
+        {
+            refused.push(format!("{name}: from {from}"));
+        }
+    }
+    assert!(refused.is_empty(), "{refused:#?}");
+    assert!(packages.len() > 100, "{}", packages.len());
+}
+
+/// All crates that a build on this kind of machine has, as cargo tells them.
+fn metadata(root: &Path) -> serde_json::Value {
+    let platform = format!("{}-unknown-linux-gnu", std::env::consts::ARCH);
+    let ask = |network: &[&str]| {
+        let all = ["metadata", "--format-version", "1", "--locked", "--filter-platform", &platform];
+        std::process::Command::new(env!("CARGO")).args(all).args(network).current_dir(root).output().unwrap()
+    };
+    // The build has fetched what is needed; a first look at other crates may need the network.
+    let offline = ask(&["--offline"]);
+    let output = if offline.status.success() { offline } else { ask(&[]) };
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|why| panic!("cargo metadata: {why}\n{said}"))
+}
+
+/// Whether an expression of licences holds: one of each `OR` (`/`), all of each `AND`.
+fn is_allowed(licence: &str, known: &dyn Fn(&str) -> bool) -> bool {
+    let licence = licence.replace('/', " OR ");
+    licence.split(" AND ").all(|part| {
+        let part = part.trim().trim_start_matches('(').trim_end_matches(')');
+        part.split(" OR ").any(|one| known(one.trim()))
+    })
+}
+
+#[test]
+fn a_licence_is_allowed_by_one_of_each_choice() {
+    let known = |one: &str| ["MIT", "Zlib"].contains(&one);
+    for (licence, holds) in [
+        ("MIT", true),
+        ("GPL-3.0", false),
+        ("MIT/GPL-3.0", true),
+        ("(MIT OR X) AND Y", false),
+        ("(X OR MIT) AND Zlib", true),
+    ] {
+        assert_eq!(is_allowed(licence, &known), holds, "{licence}");
+    }
 }
 
 #[test]

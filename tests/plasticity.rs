@@ -5,6 +5,7 @@ mod scenes;
 
 use dgmpm::parts::exact::{Exact, J2Impact};
 use dgmpm::parts::io::snapshot::{self, Snapshot};
+use dgmpm::parts::io::vtu;
 use dgmpm::parts::lane::{Kernel, as_f64};
 use dgmpm::parts::material::J2;
 use dgmpm::parts::problem::{Given, Problem, Setup};
@@ -16,7 +17,6 @@ use scenes::{Body, STEEL};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
-use vtkio::model::{Attribute, DataSet, Vtk};
 
 const METHODS: [&str; 3] = ["ader-dgmpm", "ader-dgfem", "rk-dgfem"];
 
@@ -378,12 +378,8 @@ fn energy_goes_into_plastic_flow_and_jumps_and_nowhere_else() {
 
 /// The values of a point field of a VTU file, if it is there.
 fn vtu_field(path: &Path, name: &str) -> Option<Vec<f64>> {
-    let DataSet::UnstructuredGrid { pieces, .. } = Vtk::import(path).unwrap().data else { panic!("a grid") };
-    let piece = pieces.into_iter().next().unwrap().into_loaded_piece_data(None).unwrap();
-    piece.data.point.into_iter().find_map(|attribute| match attribute {
-        Attribute::DataArray(array) if array.name == name => array.data.cast_into::<f64>(),
-        _ => None,
-    })
+    let (_, fields) = vtu::points(&std::fs::read(path).unwrap()).unwrap();
+    fields.into_iter().find(|field| field.name == name).map(|field| field.values)
 }
 
 /// Exports a run; the last snapshot, and the files of its grid and points.

@@ -50,4 +50,7 @@ Exit codes: 0 done, 2 bad input, 3 the run lost stability, 4 interrupted and sav
 pub struct Cli {
     #[command(subcommand)]
     command: command::Command,
+    /// Read HDF5 files without a seal of dgmpm too: only those of a writer that means no harm
+    #[arg(long, global = true)]
+    trust: bool,
 }

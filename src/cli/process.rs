@@ -2,6 +2,7 @@
 
 use super::{Cli, print};
 use crate::error::Result;
+use crate::file::seal;
 use clap::Parser;
 use std::process::ExitCode;
 
@@ -35,5 +36,8 @@ pub fn main() -> ExitCode {
 /// # Errors
 /// The one message for the user; its exit code is [`crate::Error::exit_code`].
 pub fn run(cli: Cli) -> Result<()> {
+    if cli.trust {
+        seal::trust();
+    }
     cli.command.run().and_then(|()| print::all_printed())
 }

@@ -17,8 +17,8 @@ const LEAF: usize = 4;
 
 /// Points that lie in no cell.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{count} point(s) of the cloud lie outside the mesh, the first is point {first} at ({}, {}); the mesh fills [{}, {}] x [{}, {}]",
-    .at[0], .at[1], .extent[0][0], .extent[1][0], .extent[0][1], .extent[1][1])]
+#[error("{count} point(s) of the cloud lie outside the mesh, the first is point {} at ({}, {}); the mesh fills [{}, {}] x [{}, {}]",
+    .first + 1, .at[0], .at[1], .extent[0][0], .extent[1][0], .extent[0][1], .extent[1][1])]
 pub struct Outside {
     /// How many.
     pub count: usize,

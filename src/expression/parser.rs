@@ -6,9 +6,16 @@ use crate::names;
 /// Nesting of brackets, signs and powers beyond which a text is refused.
 const DEPTH: usize = 100;
 
+/// Bytes of a text beyond which it is refused: it is evaluated at each point and time, and a curve belongs into a table.
+const LENGTH: usize = 20_000;
+
 /// The instructions of an expression.
 pub(super) fn parse(text: &str) -> Result<Vec<Op>, Fault> {
     let mut parser = Parser { text, at: 0, depth: 0, program: Vec::new() };
+    if text.len() > LENGTH {
+        let what = format!("the expression has {} bytes, and {LENGTH} are the most that are read", text.len());
+        return Err(parser.fault(0, what, "write it shorter; a load over time may be a table in a file"));
+    }
     parser.comparison()?;
     parser.blanks();
     if parser.at < text.len() {

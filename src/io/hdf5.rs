@@ -1,12 +1,20 @@
 //! Helpers for `hdf5-metno`: files that are written whole, datasets that are checked, errors that name the file.
+//!
+//! The library trusts a file: damaged texts of variable length make it crash or hang, and links take it to other files. So
+//! texts are written with fixed lengths, a file without a seal is read only where the user trusts it, and whatever leads out of
+//! a file is an error.
 
+use std::io::Read;
 use std::path::Path;
 
 use hdf5_metno as h5;
 use hdf5_metno::H5Type;
-use hdf5_metno::types::{FloatSize, TypeDescriptor, VarLenAscii, VarLenUnicode};
+use hdf5_metno::LinkType;
+use hdf5_metno::plist::dataset_create::Layout;
+use hdf5_metno::types::{FixedUnicode, FloatSize, TypeDescriptor, VarLenAscii, VarLenUnicode};
 
 use super::pending::Pending;
+use super::regular;
 use super::seal::{self, Seal};
 use crate::error::{Error, Place, Result};
 
@@ -14,7 +22,7 @@ use crate::error::{Error, Place, Result};
 const CHUNK_BYTES: usize = 256 * 1024;
 /// Arrays below this many bytes are stored whole, as chunks would only add overhead.
 const SMALL_BYTES: usize = 8 * 1024;
-/// Deflate compresses at most 1032 to 1. A dataset that claims more bytes than this times the size of the file is damaged.
+/// Deflate compresses at most 1032 to 1. A dataset that claims more bytes than this times those that it stores is damaged.
 const LARGEST_RATIO: u64 = 1100;
 /// After a byte shuffle, levels 1, 4, 9 compress a smooth S2 state to .467, .463, .457 of its size at 70, 40, 6 MB/s.
 const DEFLATE_LEVEL: u8 = 1;
@@ -24,6 +32,7 @@ pub struct Reader {
     file: h5::File,
     place: Place,
     bytes: u64,
+    sealed: bool,
     remedy: String,
 }
 
@@ -38,11 +47,6 @@ pub enum Values {
     U64(Vec<u64>),
     /// Texts.
     Text(Vec<String>),
-}
-
-/// Creates a file by `fill`. The file appears whole, or not at all.
-pub fn create(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<()> {
-    fill_pending(path, fill)?.commit()
 }
 
 /// When a file counts as written.
@@ -109,54 +113,99 @@ pub fn put<T: H5Type>(group: &h5::Group, name: &str, shape: &[usize], values: &[
     if values.is_empty() { Ok(()) } else { dataset.write_raw(values) }
 }
 
-/// Writes a list of texts.
+/// Lengths of texts in a file, bytes: a list of texts takes the first that all of them fit into.
+const SHORT: usize = 64;
+const MIDDLE: usize = 512;
+const LONG: usize = 4096;
+
+/// Writes a list of texts, of a fixed length.
 pub fn put_texts(group: &h5::Group, name: &str, texts: &[String]) -> h5::Result<()> {
-    let values = texts.iter().map(|t| text_value(t)).collect::<h5::Result<Vec<_>>>()?;
-    let dataset = group.new_dataset::<VarLenUnicode>().obj_track_times(false).shape(values.len()).create(name)?;
+    match texts.iter().map(String::len).max().unwrap_or(0) {
+        length if length <= SHORT => put_fixed::<SHORT>(group, name, texts),
+        length if length <= MIDDLE => put_fixed::<MIDDLE>(group, name, texts),
+        _ => put_fixed::<LONG>(group, name, texts),
+    }
+}
+
+fn put_fixed<const N: usize>(group: &h5::Group, name: &str, texts: &[String]) -> h5::Result<()> {
+    let values = texts.iter().map(|text| fixed::<N>(text)).collect::<h5::Result<Vec<_>>>()?;
+    let dataset = group.new_dataset::<FixedUnicode<N>>().obj_track_times(false).shape(values.len()).create(name)?;
     if values.is_empty() { Ok(()) } else { dataset.write_raw(&values) }
 }
 
-/// Writes a text attribute.
+/// Writes a text attribute, of a fixed length.
 pub fn put_attribute(group: &h5::Group, name: &str, text: &str) -> h5::Result<()> {
-    group.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&text_value(text)?)
+    match text.len() {
+        length if length <= SHORT => {
+            group.new_attr::<FixedUnicode<SHORT>>().create(name)?.write_scalar(&fixed::<SHORT>(text)?)
+        }
+        length if length <= MIDDLE => {
+            group.new_attr::<FixedUnicode<MIDDLE>>().create(name)?.write_scalar(&fixed::<MIDDLE>(text)?)
+        }
+        _ => group.new_attr::<FixedUnicode<LONG>>().create(name)?.write_scalar(&fixed::<LONG>(text)?),
+    }
 }
 
-fn text_value(text: &str) -> h5::Result<VarLenUnicode> {
-    text.parse().map_err(|_| h5::Error::from("a text holds a zero byte"))
+fn fixed<const N: usize>(text: &str) -> h5::Result<FixedUnicode<N>> {
+    if text.contains('\0') {
+        return Err(h5::Error::from("a text holds a zero byte"));
+    }
+    text.parse().map_err(|_| h5::Error::from(format!("a text has {} bytes, more than {N}", text.len()).as_str()))
 }
 
-/// A text attribute of a file's root, if the file can be read and has it.
+/// A text attribute of a file's root, if the file is whole and has it.
 pub fn peek_attribute(path: &Path, name: &str) -> Option<String> {
-    // A damaged file must not reach the HDF5 library.
-    seal::check(path).ok().filter(|seal| *seal != Seal::Broken)?;
+    regular::about(path).ok()?;
+    // A file that may be damaged must not reach the HDF5 library.
+    seal::check(path).ok().filter(|seal| *seal == Seal::Whole)?;
     let file = h5::File::open(path).ok()?;
-    read_attribute(&file, name).ok()
+    read_attribute(&file, name, true).ok()
 }
 
-fn read_attribute(group: &h5::Group, name: &str) -> h5::Result<String> {
+/// `sealed`: texts of variable length are read too, as this program wrote them once.
+fn read_attribute(group: &h5::Group, name: &str, sealed: bool) -> h5::Result<String> {
     let attribute = group.attr(name)?;
+    if !attribute.is_scalar() {
+        return Err(h5::Error::from("it is not one text"));
+    }
     let bytes = match attribute.dtype()?.to_descriptor()? {
-        TypeDescriptor::VarLenAscii => attribute.read_scalar::<VarLenAscii>()?.as_bytes().to_vec(),
-        TypeDescriptor::VarLenUnicode => attribute.read_scalar::<VarLenUnicode>()?.as_bytes().to_vec(),
-        other => return Err(h5::Error::from(format!("attribute `{name}` is {other}, not a text").as_str())),
+        TypeDescriptor::FixedUnicode(0..=SHORT) | TypeDescriptor::FixedAscii(0..=SHORT) => {
+            attribute.read_scalar::<FixedUnicode<SHORT>>()?.as_bytes().to_vec()
+        }
+        TypeDescriptor::FixedUnicode(..=LONG) | TypeDescriptor::FixedAscii(..=LONG) => {
+            attribute.read_scalar::<FixedUnicode<LONG>>()?.as_bytes().to_vec()
+        }
+        TypeDescriptor::VarLenAscii if sealed => attribute.read_scalar::<VarLenAscii>()?.as_bytes().to_vec(),
+        TypeDescriptor::VarLenUnicode if sealed => attribute.read_scalar::<VarLenUnicode>()?.as_bytes().to_vec(),
+        other => return Err(h5::Error::from(format!("it is {other}, not a text of a fixed length").as_str())),
     };
-    String::from_utf8(bytes).map_err(|_| h5::Error::from("a text is not UTF-8"))
+    String::from_utf8(bytes).map_err(|_| h5::Error::from("it is not UTF-8 text"))
 }
 
 impl Reader {
     /// Opens a file; `remedy` ends every message about it.
+    ///
+    /// # Errors
+    /// A file that is not there, is damaged, or has no seal and is not trusted ([`seal::trust`]).
     pub fn open(path: &Path, remedy: &str) -> Result<Self> {
         let place = Place::file(path);
         let fail = |what: String| Error::at(place.clone(), what, remedy);
-        let about = std::fs::metadata(path).map_err(|e| fail(format!("cannot be read: {e}")))?;
-        if about.is_dir() {
-            return Err(fail("this is a folder, not a file".to_owned()));
-        }
-        if seal::check(path).map_err(|e| fail(format!("cannot be read: {e}")))? == Seal::Broken {
+        let about = regular::about(path).map_err(|why| fail(format!("cannot be read: {why}")))?;
+        let seal = seal::check(path).map_err(|e| fail(format!("cannot be read: {e}")))?;
+        if seal == Seal::Broken {
             return Err(fail("the file is damaged: its bytes are not those that were written".to_owned()));
         }
+        if !begins_as_hdf5(path) {
+            return Err(fail("not a whole HDF5 file: it does not begin as one".to_owned()));
+        }
+        if seal == Seal::None && !seal::is_trusted() {
+            let what =
+                "the file has no seal of dgmpm: it was cut off, was changed by another program, or is not of dgmpm";
+            let remedy = format!("{remedy}, or give --trust if you know that its writer means no harm");
+            return Err(Error::at(place, what, remedy));
+        }
         let file = h5::File::open(path).map_err(|e| fail(format!("not a whole HDF5 file: {}", reason(&e))))?;
-        Ok(Self { file, place, bytes: about.len(), remedy: remedy.to_owned() })
+        Ok(Self { file, place, bytes: about.len(), sealed: seal == Seal::Whole, remedy: remedy.to_owned() })
     }
 
     /// The error that the file is damaged or has wrong contents.
@@ -165,8 +214,23 @@ impl Reader {
     }
 
     /// Names of all datasets of the root group.
+    ///
+    /// # Errors
+    /// A link that is not one to an object of the file itself: it may lead to any file of the machine.
     pub fn names(&self) -> Result<Vec<String>> {
-        self.file.member_names().map_err(|e| self.error(format!("its contents cannot be listed: {}", reason(&e))))
+        let (mut names, mut link) = (Vec::new(), None);
+        let visited = self.file.iter_visit_default(|name, about| {
+            match about.link_type {
+                LinkType::Hard => names.push(name.to_owned()),
+                LinkType::Soft | LinkType::External => link = Some(name.to_owned()),
+            }
+            Ok(())
+        });
+        visited.map_err(|e| self.error(format!("its contents cannot be listed: {}", reason(&e))))?;
+        match link {
+            Some(name) => Err(self.error(format!("`{name}` is a link, and links are not followed"))),
+            None => Ok(names),
+        }
     }
 
     /// Names of all attributes of the root group.
@@ -176,7 +240,7 @@ impl Reader {
 
     /// A text attribute of the root group.
     pub fn attribute(&self, name: &str) -> Result<String> {
-        read_attribute(&self.file, name)
+        read_attribute(&self.file, name, self.sealed)
             .map_err(|e| self.error(format!("attribute `{name}` cannot be read: {}", reason(&e))))
     }
 
@@ -184,38 +248,78 @@ impl Reader {
     pub fn get(&self, name: &str) -> Result<(Vec<usize>, Values)> {
         let fail = |e: h5::Error| self.error(format!("array `{name}` cannot be read: {}", reason(&e)));
         let dataset = self.file.dataset(name).map_err(fail)?;
+        self.check_place(name, &dataset)?;
         let shape = dataset.get_shape().map_err(fail)?;
         let kind = dataset.dtype().and_then(|t| t.to_descriptor()).map_err(fail)?;
-        self.check_size(name, &shape, &kind)?;
+        self.check_size(name, &dataset, &shape, &kind)?;
         let values = match kind {
             TypeDescriptor::Float(FloatSize::U4 | FloatSize::U8) => Values::F64(dataset.read_raw().map_err(fail)?),
             TypeDescriptor::Integer(_) => Values::I64(dataset.read_raw().map_err(fail)?),
             TypeDescriptor::Unsigned(_) => Values::U64(dataset.read_raw().map_err(fail)?),
-            TypeDescriptor::VarLenUnicode => {
-                let texts: Vec<VarLenUnicode> = dataset.read_raw().map_err(fail)?;
-                Values::Text(self.texts(name, texts.iter().map(|t| t.as_bytes()))?)
-            }
-            TypeDescriptor::VarLenAscii => {
-                let texts: Vec<VarLenAscii> = dataset.read_raw().map_err(fail)?;
-                Values::Text(self.texts(name, texts.iter().map(|t| t.as_bytes()))?)
-            }
-            other => return Err(self.error(format!("array `{name}` holds {other}, which is not used here"))),
+            kind => Values::Text(self.texts(name, &dataset, &kind)?),
         };
         Ok((shape, values))
     }
 
-    /// An error if the size is more than the file can hold. It is tested before memory is allocated.
-    fn check_size(&self, name: &str, shape: &[usize], kind: &TypeDescriptor) -> Result<()> {
-        let bytes = shape.iter().try_fold(kind.size() as u64, |product, &n| product.checked_mul(n as u64));
+    /// An error if the numbers of a dataset are in other files: raw storage, or a virtual dataset.
+    fn check_place(&self, name: &str, dataset: &h5::Dataset) -> Result<()> {
+        let fail = |e: h5::Error| self.error(format!("array `{name}` cannot be read: {}", reason(&e)));
+        let plan = dataset.dcpl().map_err(fail)?;
+        let outside = !plan.get_external().map_err(fail)?.is_empty();
+        match outside || plan.get_layout().map_err(fail)? == Layout::Virtual {
+            true => {
+                Err(self.error(format!("array `{name}` takes its numbers from other files, which are not followed")))
+            }
+            false => Ok(()),
+        }
+    }
+
+    /// An error if the size is more than what is stored can give, or than the file can hold. It is tested before memory is
+    /// allocated.
+    fn check_size(&self, name: &str, dataset: &h5::Dataset, shape: &[usize], kind: &TypeDescriptor) -> Result<()> {
+        let bytes = shape.iter().try_fold(kind.size().max(8) as u64, |product, &n| product.checked_mul(n as u64));
+        // Numbers of fewer than 8 bytes are widened.
+        let stored = dataset.storage_size().min(self.bytes).saturating_mul(8);
         match bytes {
-            Some(bytes) if bytes <= self.bytes.saturating_mul(LARGEST_RATIO) => Ok(()),
+            Some(bytes) if bytes <= stored.saturating_mul(LARGEST_RATIO) => Ok(()),
             _ => Err(self.error(format!("array `{name}` claims the shape {shape:?}, more than the file can hold"))),
         }
     }
 
-    fn texts<'a>(&self, name: &str, texts: impl Iterator<Item = &'a [u8]>) -> Result<Vec<String>> {
-        texts
-            .map(|t| String::from_utf8(t.to_vec()).map_err(|_| self.error(format!("a text of `{name}` is not UTF-8"))))
-            .collect()
+    fn texts(&self, name: &str, dataset: &h5::Dataset, kind: &TypeDescriptor) -> Result<Vec<String>> {
+        let bytes = match kind {
+            TypeDescriptor::FixedUnicode(0..=SHORT) | TypeDescriptor::FixedAscii(0..=SHORT) => {
+                fixed_bytes::<SHORT>(dataset)
+            }
+            TypeDescriptor::FixedUnicode(..=MIDDLE) | TypeDescriptor::FixedAscii(..=MIDDLE) => {
+                fixed_bytes::<MIDDLE>(dataset)
+            }
+            TypeDescriptor::FixedUnicode(..=LONG) | TypeDescriptor::FixedAscii(..=LONG) => fixed_bytes::<LONG>(dataset),
+            // As this program wrote texts once.
+            TypeDescriptor::VarLenUnicode if self.sealed => {
+                dataset.read_raw::<VarLenUnicode>().map(|all| all.iter().map(|text| text.as_bytes().to_vec()).collect())
+            }
+            TypeDescriptor::VarLenAscii if self.sealed => {
+                dataset.read_raw::<VarLenAscii>().map(|all| all.iter().map(|text| text.as_bytes().to_vec()).collect())
+            }
+            other => return Err(self.error(format!("array `{name}` holds {other}, which is not used here"))),
+        };
+        let bytes: Vec<Vec<u8>> =
+            bytes.map_err(|e| self.error(format!("array `{name}` cannot be read: {}", reason(&e))))?;
+        let text = |bytes| String::from_utf8(bytes).map_err(|_| self.error(format!("a text of `{name}` is not UTF-8")));
+        bytes.into_iter().map(text).collect()
     }
+}
+
+fn fixed_bytes<const N: usize>(dataset: &h5::Dataset) -> h5::Result<Vec<Vec<u8>>> {
+    let all = dataset.read_raw::<FixedUnicode<N>>()?;
+    Ok(all.iter().map(|text| text.as_bytes().to_vec()).collect())
+}
+
+/// Whether a file has the signature of HDF5 at its start, where this program writes it.
+pub fn begins_as_hdf5(path: &Path) -> bool {
+    let signature = b"\x89HDF\r\n\x1a\n";
+    let mut start = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(signature.len() as u64).read_to_end(&mut start));
+    read.is_ok() && start == signature
 }

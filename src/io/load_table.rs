@@ -1,5 +1,7 @@
 //! Loads over time, from a CSV file.
 
+use super::regular;
+use super::seal::{self, Seal};
 use crate::error::{Error, Place, Result};
 use serde::Serialize;
 use std::path::Path;
@@ -31,9 +33,21 @@ impl LoadTable {
     /// # Errors
     /// A file that cannot be read; a header or a row that is no such thing, with its line.
     pub fn read(path: &Path, columns: usize, unit: &str) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|why| {
+        let text = regular::text(path, u64::MAX).map_err(|why| {
             Error::at(Place::file(path), format!("the file cannot be read: {why}"), "give a CSV file")
         })?;
+        if seal::check_text(text.as_bytes()) == Seal::Broken {
+            let what = "the file is damaged: its bytes are not those that were written";
+            return Err(Error::at(Place::file(path), what, "if you have changed it, remove its last line"));
+        }
+        Self::parse(&text, path, columns, unit)
+    }
+
+    /// Reads the text of a file, as [`LoadTable::read`]; `path` stands in messages.
+    ///
+    /// # Errors
+    /// As for [`LoadTable::read`].
+    pub fn parse(text: &str, path: &Path, columns: usize, unit: &str) -> Result<Self> {
         let reading = Reading { path, columns, unit };
         let lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
         let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use super::store::{ArrayRef, Format, Store, write_arrays};
-use crate::error::Result;
+use crate::error::{Place, Result};
 use crate::mesh::{BoundaryEdge, FACES, Mesh};
 
 /// The format of `mesh.h5`.
@@ -27,7 +27,7 @@ pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<()> {
     write_arrays(path, FORMAT, &[], &arrays)
 }
 
-/// Reads a mesh; every index in it is within range.
+/// Reads a mesh; every index in it is within range, and every cell is convex and runs counter-clockwise.
 pub fn read_mesh(path: &Path) -> Result<Mesh> {
     let mut store = Store::read(path, FORMAT)?;
     let nodes = store.reals("nodes", &[2])?;
@@ -44,7 +44,7 @@ pub fn read_mesh(path: &Path) -> Result<Mesh> {
     };
     match fault(&mesh) {
         Some(what) => Err(store.error(what)),
-        None => Ok(mesh),
+        None => mesh.check().map(|()| mesh).map_err(|why| crate::Error::from(why).or_at(Place::file(path))),
     }
 }
 

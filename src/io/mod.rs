@@ -24,12 +24,13 @@ pub mod own;
 pub mod pending;
 pub mod points;
 pub mod pvd;
-pub mod seal;
 pub mod snapshot;
 pub mod store;
 pub mod vtu;
 pub mod xdmf;
 
+pub(crate) use crate::file as regular;
+pub use crate::file::seal;
 pub use load_table::LoadTable;
 
 use crate::error::Result;

@@ -3,16 +3,22 @@
 use std::cmp::Ordering;
 use std::path::Path;
 
-use vtkio::model::{Attribute, DataSet, Vtk};
-
 use super::grid::{Field, Kind};
+use super::seal::{self, Seal};
+use super::{regular, vtu};
 use crate::error::{Error, Place, Result};
 
 /// What a file of points must be, for messages.
 const REMEDY: &str = "give a VTU file with its points in m, or rows x, y in m";
 
+/// Columns beyond which rows are refused: the parts of a tensor are looked for by name among all of them.
+const COLUMNS: usize = 1000;
+
+/// Largest |z| that counts as 0, relative to the largest coordinate: it allows for rounding in a rotated plane.
+const FLAT: f64 = 1e-10;
+
 /// Points with their fields.
-type Found = (Vec<[f64; 2]>, Vec<Field>);
+pub type Found = (Vec<[f64; 2]>, Vec<Field>);
 
 /// Reads positions X in m: of a VTU file by its ending, else rows x, y with or without a row of names.
 ///
@@ -40,37 +46,35 @@ pub fn read_with_fields(path: &Path) -> Result<Found> {
 
 fn vtu(path: &Path) -> Result<Found> {
     let fault = |why: String| Error::at(Place::file(path), format!("cannot read the points: {why}"), REMEDY);
-    let file = Vtk::import(path).map_err(|why| fault(why.to_string()))?;
-    let DataSet::UnstructuredGrid { pieces, .. } = file.data else {
-        return Err(fault("it is not an unstructured grid".to_owned()));
-    };
-    let (mut points, mut fields): Found = (Vec::new(), Vec::new());
-    for piece in pieces {
-        let piece = piece.into_loaded_piece_data(None).map_err(|why| fault(why.to_string()))?;
-        let numbers = piece.points.cast_into::<f64>().ok_or_else(|| fault("its points are no numbers".to_owned()))?;
-        points.extend(numbers.chunks_exact(3).map(|x| [x[0], x[1]]));
-        for attribute in piece.data.point {
-            let Attribute::DataArray(array) = attribute else { continue };
-            let count = numbers.len() / 3;
-            let kind = [Kind::Scalar, Kind::Vector, Kind::Tensor];
-            let kind = kind.into_iter().find(|kind| array.data.len() == count * kind.components());
-            let (Some(kind), Some(values)) = (kind, array.data.cast_into::<f64>()) else { continue };
-            match fields.iter_mut().find(|field| field.name == array.name) {
-                Some(field) => field.values.extend(values),
-                None => fields.push(Field::new(array.name, kind, values)),
-            }
-        }
+    let bytes = regular::bytes(path, u64::MAX).map_err(fault)?;
+    if seal::check_text(&bytes) == Seal::Broken {
+        let what = "the file is damaged: its bytes are not those that were written";
+        return Err(Error::at(
+            Place::file(path),
+            what,
+            "export it again; if you have changed it, remove its last line",
+        ));
     }
-    // A field must be in every piece of the file; otherwise it is ignored.
-    fields.retain(|field| field.values.len() == points.len() * field.kind.components());
-    Ok((points, fields))
+    let (points, fields) = vtu::points(&bytes).map_err(fault)?;
+    let size = points.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
+    // NaN is an error too.
+    if let Some(k) = points.iter().position(|x| x[2].is_nan() || x[2].abs() > FLAT * size) {
+        return Err(fault(format!("point {} has z = {}, and the body lies in the plane z = 0", k + 1, points[k][2])));
+    }
+    Ok((points.into_iter().map(|[x, y, _]| [x, y]).collect(), fields))
 }
 
 fn rows(path: &Path) -> Result<Found> {
-    let text = std::fs::read_to_string(path)
+    let text = regular::text(path, u64::MAX)
         .map_err(|why| Error::at(Place::file(path), format!("cannot read the points: {why}"), REMEDY))?;
-    // Spreadsheets write a byte order mark at the start of UTF-8.
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    of_rows(&text, path)
+}
+
+/// Points and fields of rows; `path` stands in messages.
+///
+/// # Errors
+/// As for [`read_with_fields`].
+pub fn of_rows(text: &str, path: &Path) -> Result<Found> {
     let (mut names, mut numbers, mut count) = (Vec::new(), Vec::new(), None);
     for (line, text) in text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty()) {
         let fault = |(what, remedy): Fault| Error::at(Place::line(path, line + 1, 1), what, remedy);
@@ -81,13 +85,17 @@ fn rows(path: &Path) -> Result<Found> {
             let row = numbers_of(&words, &names, count.filter(|_| names.is_empty())).map_err(fault)?;
             numbers.extend(row);
         }
+        if words.len() > COLUMNS {
+            let what = format!("the row has {} entries, and {COLUMNS} are the most that are read", words.len());
+            return Err(fault((what, "give x, y and the fields that are needed")));
+        }
         if words.len() < 2 {
             return Err(fault(("this is not a point".to_owned(), "give x, y in m")));
         }
         count = Some(words.len());
     }
     let count = count.unwrap_or(2);
-    let place = place_of(&names);
+    let place = place_of(&names).map_err(|(what, remedy)| Error::at(Place::file(path), what, remedy))?;
     let column = |k: usize| -> Vec<f64> { numbers.iter().skip(k).step_by(count).copied().collect() };
     let points = numbers.chunks_exact(count).map(|row| place.map(|k| row[k])).collect();
     let others = names.into_iter().enumerate().filter(|(k, _)| !place.contains(k));
@@ -140,12 +148,42 @@ fn numbers_of(words: &[&str], names: &[String], before: Option<usize>) -> std::r
     }
 }
 
-/// The columns of x and y: by their names (also those of ParaView), otherwise the first two columns.
-fn place_of(names: &[String]) -> [usize; 2] {
-    let find = |known: [&str; 2]| names.iter().position(|name| known.iter().any(|k| name.eq_ignore_ascii_case(k)));
-    match (find(["x", "Points:0"]), find(["y", "Points:1"])) {
-        (Some(x), Some(y)) => [x, y],
-        _ => [0, 1],
+/// The columns of x and y: by their names (also those of ParaView, with units behind them), otherwise the first two columns.
+///
+/// # Errors
+/// A unit that is not m; names of which only one is a coordinate, or of which two are the same one.
+fn place_of(names: &[String]) -> std::result::Result<[usize; 2], Fault> {
+    let mut found = [None; 2];
+    for (column, name) in names.iter().enumerate() {
+        let (name, unit) = split_unit(name);
+        let axis = AXES_NAMES.iter().position(|known| known.iter().any(|known| name.eq_ignore_ascii_case(known)));
+        let Some(axis) = axis else { continue };
+        if let Some(unit) = unit.filter(|unit| *unit != "m") {
+            return Err((format!("the unit of `{name}` is {unit}"), "give coordinates in m"));
+        }
+        if found[axis].replace(column).is_some() {
+            return Err((format!("there are two columns `{name}`"), "name one column x and one y"));
+        }
+    }
+    match found {
+        [Some(x), Some(y)] => Ok([x, y]),
+        [None, None] => Ok([0, 1]),
+        [x, _] => {
+            let (there, missing) = if x.is_some() { ("x", "y") } else { ("y", "x") };
+            Err((format!("a column is named {there}, and none {missing}"), "name one column x and one y"))
+        }
+    }
+}
+
+/// Names of x and of y.
+const AXES_NAMES: [[&str; 2]; 2] = [["x", "Points:0"], ["y", "Points:1"]];
+
+/// A name and the unit behind it, as in `x [m]` or `x (m)`.
+fn split_unit(name: &str) -> (&str, Option<&str>) {
+    let unit = |open, close| name.strip_suffix(close).and_then(|rest: &str| rest.split_once(open));
+    match unit('[', ']').or_else(|| unit('(', ')')) {
+        Some((name, unit)) => (name.trim(), Some(unit.trim())),
+        None => (name.trim(), None),
     }
 }
 
@@ -220,9 +258,20 @@ mod tests {
             "\"id\",\"X\",\"Y\"\n7,0.25,0.5\n8,1,2\n",
             "\"u\",\"Points:0\",\"Points:1\",\"Points:2\"\n7,0.25,0.5,0\n7,1,2,0\n",
             "X [m],Y [m]\n0.25, 0.5,\n1, 2,\n",
+            "y,x\n0.5,0.25\n2,1\n",
+            "Y [m],X (m)\n0.5,0.25\n2,1\n",
+            "a,y,b,x\n7,0.5,8,0.25\n7,2,8,1\n",
             "0.25 0.5 3\n1 2 4\n",
         ] {
             assert_eq!(read_text(text), Ok(vec![a, b]), "{text:?}");
+        }
+        for (text, what) in [
+            ("y,z\n1,2\n", "a column is named y, and none x"),
+            ("x,y [mm]\n1,2\n", "the unit of `y` is mm"),
+            ("x,y,X\n1,2,3\n", "two columns `X`"),
+        ] {
+            let why = read_text(text).unwrap_err();
+            assert!(why.contains("points.csv: ") && why.contains(what), "{text:?}: {why}");
         }
         for (text, line, what) in [
             ("0.25;0.5\n1,2\n", 1, "`;` is not known as a separator"),

@@ -6,6 +6,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::hdf5::{self, Reader, Values};
+use super::regular;
 use crate::error::{Error, Result};
 
 /// The format of a file, and the command that makes the file again.
@@ -195,13 +196,20 @@ fn check_format(reader: &Reader, attributes: &BTreeMap<String, String>, format: 
 
 /// Whether a file should be a store, by its name or its first bytes. It may be damaged.
 pub fn is_meant_as_store(path: &Path) -> bool {
-    let signature = b"\x89HDF\r\n\x1a\n";
-    let mut start = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| file.take(signature.len() as u64).read_to_end(&mut start));
-    path.extension().is_some_and(|ending| ending == "h5") || read.is_ok() && start == signature
+    path.extension().is_some_and(|ending| ending == "h5") || regular::about(path).is_ok() && hdf5::begins_as_hdf5(path)
 }
 
-/// Whether a file is a store of this program, of any format. An output of another kind must never replace it.
+/// Bytes at the start of a file in which its attributes stand, where they are looked for without the HDF5 library.
+const HEAD: u64 = 1 << 20;
+
+/// Whether a file is a store of this program, of any format, damaged or not. An output of another kind must never replace it.
 pub fn is_store(path: &Path) -> bool {
-    hdf5::peek_attribute(path, FORMAT).is_some_and(|name| name.starts_with("dgmpm "))
+    if regular::about(path).is_err() || !hdf5::begins_as_hdf5(path) {
+        return false;
+    }
+    let mut head = Vec::new();
+    // Each name of a format begins so.
+    let mark = b"dgmpm ";
+    let read = std::fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+    read.is_ok() && head.windows(mark.len()).any(|window| window == mark)
 }

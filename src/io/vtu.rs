@@ -1,65 +1,121 @@
-//! VTU files (VTK XML, unstructured grid) for ParaView, VTK, pyvista and meshio.
+//! VTU files (VTK XML, unstructured grid) for ParaView, VTK, pyvista and meshio: written here, and the points of them read.
 //!
-//! Numbers have 64 bits and are written inline as base64, not compressed. The compressing writer of `vtkio` 0.7.0-rc2
-//! adds an empty block to an array whose bytes are a multiple of the block; VTK then reads this block as a full one.
+//! Numbers have 64 bits and are written inline as base64, not compressed, with the number of their bytes before them. Indices are
+//! signed, since meshio cannot compute with unsigned ones.
 
+mod decode;
+mod read;
+
+pub use read::points;
+
+use std::fmt::Write;
 use std::path::Path;
 
-use vtkio::model::{Attribute, Attributes, ByteOrder, CellType, Cells, UnstructuredGridPiece, Version, VertexNumbers};
-use vtkio::model::{DataSet, Vtk};
-use vtkio::xml::Compressor;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use quick_xml::escape::escape;
 
 use super::grid::{Field, HighOrderGrid, PointCloud};
 use super::pending::write_text;
-use crate::error::{Error, Result};
+use super::seal;
+use crate::error::Result;
+
+/// VTK's numbers of kinds of cells.
+const VERTEX: u8 = 1;
+const QUAD: u8 = 9;
+const LAGRANGE_QUADRILATERAL: u8 = 70;
 
 /// Writes a grid: Lagrange quadrilaterals (VTK type 70) of degree N, bilinear ones (type 9) for N = 0 and 1.
 pub fn write_grid(path: &Path, grid: &HighOrderGrid) -> Result<()> {
     grid.check()?;
-    let kind = if grid.degree <= 1 { CellType::Quad } else { CellType::LagrangeQuadrilateral };
-    let cells = cells(grid.cells(), grid.nodes_per_cell(), kind);
-    let data = Attributes { point: attributes(&grid.point_fields), cell: attributes(&grid.cell_fields) };
-    write(path, UnstructuredGridPiece { points: coordinates(&grid.points), cells, data })
+    let kind = if grid.degree <= 1 { QUAD } else { LAGRANGE_QUADRILATERAL };
+    let mut piece = Piece::begin(grid.points.len(), grid.cells());
+    piece.fields("PointData", &grid.point_fields);
+    piece.fields("CellData", &grid.cell_fields);
+    piece.points(&grid.points);
+    piece.cells(grid.cells(), grid.nodes_per_cell(), kind);
+    write_text(path, &piece.end())
 }
 
 /// Writes points as vertices (VTK type 1).
 pub fn write_points(path: &Path, cloud: &PointCloud) -> Result<()> {
     cloud.check()?;
-    let cells = cells(cloud.points.len(), 1, CellType::Vertex);
-    let data = Attributes { point: attributes(&cloud.fields), cell: Vec::new() };
-    write(path, UnstructuredGridPiece { points: coordinates(&cloud.points), cells, data })
+    let count = cloud.points.len();
+    let mut piece = Piece::begin(count, count);
+    piece.fields("PointData", &cloud.fields);
+    piece.points(&cloud.points);
+    piece.cells(count, 1, VERTEX);
+    write_text(path, &piece.end())
 }
 
-fn coordinates(points: &[[f64; 3]]) -> vtkio::IOBuffer {
-    vtkio::IOBuffer::F64(points.as_flattened().to_vec())
+/// The text of a file with one piece.
+struct Piece(String);
+
+impl Piece {
+    fn begin(points: usize, cells: usize) -> Self {
+        Self(format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
+             header_type=\"UInt64\"><UnstructuredGrid><Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"
+        ))
+    }
+
+    fn end(mut self) -> String {
+        self.0.push_str("</Piece></UnstructuredGrid></VTKFile>\n");
+        seal::text(&self.0, seal::XML)
+    }
+
+    fn fields(&mut self, section: &str, fields: &[Field]) {
+        if fields.is_empty() {
+            return;
+        }
+        self.0 += &format!("<{section}>");
+        for field in fields {
+            self.reals(&field.name, field.kind.components(), &field.values);
+        }
+        self.0 += &format!("</{section}>");
+    }
+
+    fn points(&mut self, points: &[[f64; 3]]) {
+        self.0.push_str("<Points>");
+        self.reals("Points", 3, points.as_flattened());
+        self.0.push_str("</Points>");
+    }
+
+    /// Cells with `size` own points each; the points of one cell follow those of the cell before.
+    fn cells(&mut self, count: usize, size: usize, kind: u8) {
+        let indices = |all: &mut dyn Iterator<Item = usize>| all.map(|k| k as i64).collect::<Vec<_>>();
+        let last = (count * size).saturating_sub(1);
+        self.0.push_str("<Cells>");
+        let connectivity = indices(&mut (0..count * size));
+        self.array("Int64", "connectivity", 1, ["0", &last.to_string()], bytes(&connectivity, |k| k.to_le_bytes()));
+        let offsets = indices(&mut (1..=count).map(|cell| cell * size));
+        let range = [size.to_string(), (count * size).to_string()];
+        self.array("Int64", "offsets", 1, [&range[0], &range[1]], bytes(&offsets, |k| k.to_le_bytes()));
+        let kinds = vec![kind; count];
+        self.array("UInt8", "types", 1, [&kind.to_string(), &kind.to_string()], kinds);
+        self.0.push_str("</Cells>");
+    }
+
+    fn reals(&mut self, name: &str, components: usize, values: &[f64]) {
+        // NaN is in no range.
+        let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().fold(f64::NAN, pick).to_string());
+        self.array("Float64", name, components, [&low, &high], bytes(values, |x| x.to_le_bytes()));
+    }
+
+    fn array(&mut self, number: &str, name: &str, components: usize, range: [&str; 2], data: Vec<u8>) {
+        let several = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
+        let ([low, high], name) = (range, escape(name));
+        // Writing to a String cannot fail.
+        let _ = write!(
+            self.0,
+            "<DataArray type=\"{number}\" Name=\"{name}\"{several} format=\"binary\" RangeMin=\"{low}\" RangeMax=\"{high}\">"
+        );
+        let length = (data.len() as u64).to_le_bytes();
+        STANDARD.encode_string([&length[..], &data].concat(), &mut self.0);
+        self.0.push_str("</DataArray>");
+    }
 }
 
-/// Cells with `size` own points each; the points of one cell follow those of the cell before.
-fn cells(count: usize, size: usize, kind: CellType) -> Cells {
-    let connectivity = (0..(count * size) as u64).collect();
-    let offsets = (1..=count as u64).map(|c| c * size as u64).collect();
-    Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types: vec![kind; count] }
-}
-
-fn attributes(fields: &[Field]) -> Vec<Attribute> {
-    let attribute = |f: &Field| {
-        Attribute::generic(f.name.as_str(), f.kind.components() as u32)
-            .with_data(vtkio::IOBuffer::F64(f.values.clone()))
-    };
-    fields.iter().map(attribute).collect()
-}
-
-fn write(path: &Path, piece: UnstructuredGridPiece) -> Result<()> {
-    let file = Vtk {
-        version: Version::new_xml(1, 0),
-        title: String::new(),
-        byte_order: ByteOrder::LittleEndian,
-        data: DataSet::inline(piece),
-        file_path: None,
-    };
-    let xml = file.try_into_xml_format(Compressor::None, 0).map_err(|e| Error::output(path, e))?;
-    // vtkio marks indices as unsigned, and meshio cannot compute with unsigned indices; below 2^63 the bytes are the same.
-    // Only an attribute can hold a quote, so this changes nothing else.
-    let text = xml.to_string().replace(" type=\"UInt64\"", " type=\"Int64\"");
-    write_text(path, &format!("<?xml version=\"1.0\"?>\n{text}\n"))
+fn bytes<T: Copy, const N: usize>(values: &[T], of: fn(T) -> [u8; N]) -> Vec<u8> {
+    values.iter().flat_map(|value| of(*value)).collect()
 }

@@ -29,6 +29,16 @@ impl Mesh {
         Ok(self)
     }
 
+    /// Whether the mesh is as [`Mesh::checked`] leaves one: the same faults, and cells that run clockwise are one too. A mesh
+    /// from a file of this program or from a caller is not changed behind their back.
+    ///
+    /// # Errors
+    /// The first fault of its cells.
+    pub fn check(&self) -> Result<(), Error> {
+        self.consistent()?;
+        (0..self.cells.len()).try_for_each(|cell| self.distinct(cell).and_then(|()| self.convex(cell)))
+    }
+
     /// Checks that all indices point into their lists, and that there are cells.
     pub fn consistent(&self) -> Result<(), Error> {
         let refuse = |what: String| Err(Error::Inconsistent { what });
@@ -119,6 +129,14 @@ mod tests {
         assert!(matches!(flat, Err(Error::Inverted { at: [0.5, 0.5], .. })), "{flat:?}");
         let line = single([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]]).checked();
         assert!(matches!(line, Err(Error::Inverted { .. })), "{line:?}");
+    }
+
+    #[test]
+    fn a_mesh_that_must_stay_as_it_is_has_no_cell_that_runs_clockwise() {
+        let mut mesh = rectangle([2.0, 2.0], [2, 2]).unwrap();
+        assert_eq!(mesh.check(), Ok(()));
+        mesh.cells[3].swap(1, 3);
+        assert!(matches!(mesh.check(), Err(Error::Inverted { cell: 4, .. })), "{:?}", mesh.check());
     }
 
     #[test]

@@ -181,7 +181,9 @@ impl From<Error> for crate::Error {
 }
 
 fn point(at: &[f64; 2]) -> String {
-    format!("({}, {})", at[0], at[1])
+    // Without an exponent 1e200 has two hundred zeros.
+    let number = |x: f64| if x == 0.0 || (1e-4..1e7).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") };
+    format!("({}, {})", number(at[0]), number(at[1]))
 }
 
 fn points(at: &[[f64; 2]]) -> String {

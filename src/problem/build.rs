@@ -77,7 +77,8 @@ impl Scene {
     /// # Errors
     /// A mesh whose faces or periodic groups do not fit together.
     pub fn links(&self, mesh: &Mesh) -> Result<Vec<[Link; 4]>> {
-        Ok(mesh::periodic_links(mesh, &self.periodic_groups(mesh))?)
+        let links = mesh::periodic_links(mesh, &self.periodic_groups(mesh));
+        links.map_err(|why| Error::from(why).or_at(self.place("mesh")))
     }
 
     /// The number of the `[[material]]` of each cell.

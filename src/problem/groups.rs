@@ -1,6 +1,6 @@
 //! The groups that a scene names against those of a mesh, and the edges that they have there.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::mesh::parts::EdgeCount;
 use crate::scene::{Boundary, Scene};
@@ -9,8 +9,9 @@ impl Scene {
     /// The mesh cut along the edges inside of the body that bear a condition, its groups checked.
     ///
     /// # Errors
-    /// As [`Scene::check_mesh`]; a cut that cannot open.
+    /// As [`Scene::check_mesh`]; a cut that cannot open; a cell that is inverted, collapsed or not finite, whoever made the mesh.
     pub fn cut_mesh(&self, mesh: Mesh) -> Result<Mesh> {
+        mesh.check().map_err(|why| Error::from(why).or_at(self.place("mesh")))?;
         let of_scene = |name: &String| {
             let own = self.boundaries.iter().filter(|boundary| !boundary.is_joined());
             own.flat_map(Boundary::groups).any(|group| group == name)

@@ -3,7 +3,7 @@
 use super::{Body, Files, Problem};
 use crate::error::{Error, Place, Result};
 use crate::io::cloud_file::{self, Extras};
-use crate::io::{mesh_file, pending};
+use crate::io::{mesh_file, pending, seal};
 use crate::observe::{Solution, export};
 use crate::operators::Certificate;
 use crate::registry::grids::copy;
@@ -130,7 +130,7 @@ pub fn write_input(problem: &Problem, files: &Files, folder: &Folder, certificat
     let more = Extras { virtual_points: body.virtual_points.clone(), fields, certificates };
     cloud_file::write_with(&folder.cloud(), &body.cloud, &body.mesh, &more)?;
     let text = scene.portable_toml(files.mesh.is_some(), files.cloud.is_some());
-    pending::write_text(&folder.scene(), &text)
+    pending::write_text(&folder.scene(), &seal::text(&text, seal::TOML))
 }
 
 /// The files that `[[regrid]]` names.

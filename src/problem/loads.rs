@@ -1,8 +1,8 @@
 //! The tables of loads of a scene: read from their files, and stored beside the scene of a run folder.
 
 use crate::error::Result;
-use crate::io::LoadTable;
-use crate::registry::grids::copy;
+use crate::io::{LoadTable, seal};
+use crate::registry::grids::copy_text;
 use crate::registry::{Chosen, Form, Value, Values};
 use crate::run::Folder;
 use crate::scene::Scene;
@@ -45,7 +45,7 @@ impl Scene {
         for (number, boundary) in self.boundaries.iter().enumerate() {
             for (parameter, file) in boundary.condition.files() {
                 let name = Self::stored_loads(number, parameter.name);
-                copy(&self.resolve(Path::new(file)), &folder.root.join(name))?;
+                copy_text(&self.resolve(Path::new(file)), &folder.root.join(name), seal::TOML)?;
             }
         }
         Ok(())

@@ -42,6 +42,8 @@ pub struct Regrids<'a> {
     next: Option<(usize, Result<Mesh>)>,
     material: Vec<usize>,
     cloud: Cloud,
+    /// Cells of the grid at the start.
+    start: usize,
     recent: Recent,
     files: HashMap<String, GridFiles>,
     table: Option<Table>,
@@ -54,7 +56,7 @@ impl Pause for Regrids<'_> {
 
     fn due(&mut self, view: &View) -> bool {
         let (step, time) = (view.state.step, view.state.time);
-        let present = Present { view, cloud: &self.cloud, material: &self.material };
+        let present = Present { view, cloud: &self.cloud, material: &self.material, start: self.start };
         for rule in 0..self.schedules.len() {
             if self.schedules[rule].due(step, time, view.dt) && self.scene.regrid_is_due(rule, &present) {
                 let mesh = self.scene.regrid_mesh(rule, self.fired[rule], &present);
@@ -118,8 +120,8 @@ impl<'a> Regrids<'a> {
         let files = HashMap::from([(key_of_files(first), problem.files.clone())]);
         let fired = vec![0; schedules.len()];
         let (material, cloud) = (first.material.clone(), first.cloud.clone());
-        let recent = Recent::default();
-        Ok(Self { scene, folder, schedules, fired, next: None, material, cloud, recent, files, table })
+        let (recent, start) = (Recent::default(), first.mesh.cells.len());
+        Ok(Self { scene, folder, schedules, fired, next: None, material, cloud, start, recent, files, table })
     }
 
     /// Puts the grid that is due in place of that of `problem`, and the state on it; what happened in words, and totals before

@@ -1,7 +1,7 @@
 //! Whether what a scene asks for has room in the memory of this machine. It is looked at before it is made: a system without
 //! free memory ends the program without a word.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::{Mesh, map};
 use crate::registry::layouts::Points;
 use crate::scene::{Cloud, Mesh as Source, Scene};
@@ -16,14 +16,49 @@ const UNKNOWN: usize = 64 << 30;
 
 const GIB: f64 = (1_u64 << 30) as f64;
 
-/// Free memory of the system, bytes.
+/// Memory that this process can still have, bytes: what is free in the system, in its control group, and in its address space.
 pub fn available() -> usize {
-    let told = || {
-        let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-        let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-        line.split_whitespace().next()?.parse::<usize>().ok()?.checked_mul(1024)
-    };
-    told().unwrap_or(UNKNOWN)
+    let limits = [of_system(), of_group(), of_process()];
+    limits.into_iter().flatten().min().unwrap_or(UNKNOWN)
+}
+
+/// The number behind a word at the start of a line of a file, in the units of the file.
+fn told(file: &str, word: &str) -> Option<usize> {
+    let text = std::fs::read_to_string(file).ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix(word))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+fn of_system() -> Option<usize> {
+    told("/proc/meminfo", "MemAvailable:")?.checked_mul(1024)
+}
+
+/// Of a container or a batch job: its limit without what it has in use.
+fn of_group() -> Option<usize> {
+    let two = ["/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"];
+    let one = ["/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"];
+    // `max` stands for no limit.
+    [two, one].into_iter().find_map(|[limit, used]| Some(told(limit, "")?.saturating_sub(told(used, "")?)))
+}
+
+/// Of `ulimit -v`: the limit without what is mapped.
+fn of_process() -> Option<usize> {
+    let limit = told("/proc/self/limits", "Max address space")?;
+    Some(limit.saturating_sub(told("/proc/self/status", "VmSize:")?.checked_mul(1024)?))
+}
+
+/// Whether a mesh of so many cells has room, before it is made.
+///
+/// # Errors
+/// More memory than is free.
+pub fn check_mesh(cells: usize) -> Result<()> {
+    let (needed, available) = (cells as f64 * MESH, available() as f64);
+    if needed <= available {
+        return Ok(());
+    }
+    let (needed, available) = (needed / GIB, available / GIB);
+    let what = format!("{cells} cells need about {needed:.1} GiB of memory, and {available:.1} GiB are free");
+    Err(Error::input(what, "give fewer cells"))
 }
 
 /// Cells that are to be made.

@@ -3,8 +3,8 @@
 use super::Problem;
 use super::input::foreign;
 use crate::error::{Error, Result};
-use crate::io::pending;
 use crate::io::snapshot::{self, GridFiles, Snapshot};
+use crate::io::{pending, seal};
 use crate::mesh::Mesh;
 use crate::observe;
 use crate::regrid::points::Policy;
@@ -74,7 +74,7 @@ impl Problem {
         self.scene.store_loads(folder)?;
         let path = observe::write(&self.scheme, &self.state, &files, &folder.snapshots())?;
         Snapshot::read(&path)?.write(&folder.root.join("initial.h5"))?;
-        pending::write_text(&folder.scene(), &self.scene.portable_from("initial.h5"))
+        pending::write_text(&folder.scene(), &seal::text(&self.scene.portable_from("initial.h5"), seal::TOML))
     }
 }
 

@@ -6,6 +6,7 @@
 
 mod given;
 mod groups;
+mod load;
 mod names;
 mod origin;
 mod outputs;
@@ -269,19 +270,6 @@ pub enum When {
 }
 
 impl Scene {
-    /// Reads a scene file and applies overrides `key.path=value`.
-    pub fn load(path: &Path, sets: &[String]) -> Result<Self> {
-        let whole = |what: String, remedy: &str| Error::at(Place::file(path), what, remedy);
-        let bytes = std::fs::read(path)
-            .map_err(|why| whole(format!("cannot read the scene: {why}"), "give the path of a scene file (.toml)"))?;
-        let text = String::from_utf8(bytes).map_err(|why| {
-            let good = why.utf8_error().valid_up_to();
-            let before = String::from_utf8_lossy(&why.as_bytes()[..good]).into_owned();
-            Origin::error_at_byte(path, &before, good, "this is not UTF-8 text".to_owned(), "save the scene as UTF-8")
-        })?;
-        Self::parse(&text, path, sets)
-    }
-
     /// Reads the text of a scene; `path` stands in messages, and relative paths start from its folder.
     pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Self> {
         let original = document(text, path)?;

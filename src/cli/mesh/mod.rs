@@ -4,10 +4,10 @@ mod args;
 
 use super::output::keep;
 use super::print::{note, say, table};
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use crate::io::{read_mesh, write_mesh};
 use crate::mesh::{Link, Mesh, links, rectangle};
-use crate::problem::notices;
+use crate::problem::{notices, room::check_mesh};
 use args::{Action, To};
 use std::path::Path;
 
@@ -18,27 +18,35 @@ pub fn run(args: &Args) -> Result<()> {
     match (&args.action, &args.file) {
         (Some(Action::Info { file }), _) => {
             let mesh = read_mesh(file)?;
-            info(&mesh, &links(&mesh)?);
+            info(&mesh, &links_of(&mesh, file)?);
             Ok(())
         }
         (Some(Action::Rectangle { size, cells, to }), _) => {
             let pair = |what| Error::input(format!("{what} wants two numbers"), "for example --size 3,3 --cells 30,30");
             let size = size[..].try_into().map_err(|_| pair("--size"))?;
-            let cells = cells[..].try_into().map_err(|_| pair("--cells"))?;
-            write(&rectangle(size, cells)?, to, Path::new("rectangle.h5"))
+            let cells: [usize; 2] = cells[..].try_into().map_err(|_| pair("--cells"))?;
+            check_mesh(cells[0].saturating_mul(cells[1]))?;
+            let mesh = rectangle(size, cells)?;
+            write(&mesh, &links(&mesh)?, to, Path::new("rectangle.h5"))
         }
-        (None, Some(file)) => write(&read_mesh(file)?, &args.to, &file.with_extension("h5")),
+        (None, Some(file)) => {
+            let mesh = read_mesh(file)?;
+            write(&mesh, &links_of(&mesh, file)?, &args.to, &file.with_extension("h5"))
+        }
         (None, None) => Err(Error::input("no mesh is named", "give a Gmsh file, or `rectangle`, or `info FILE`")),
     }
 }
 
+fn links_of(mesh: &Mesh, file: &Path) -> Result<Vec<[Link; 4]>> {
+    links(mesh).map_err(|why| Error::from(why).or_at(Place::file(file)))
+}
+
 /// Writes a mesh whose boundary is wholly tagged.
-fn write(mesh: &Mesh, to: &To, default: &Path) -> Result<()> {
-    let links = links(mesh)?;
+fn write(mesh: &Mesh, links: &[[Link; 4]], to: &To, default: &Path) -> Result<()> {
     let out = to.out.as_deref().unwrap_or(default);
     keep(out, to.force)?;
     write_mesh(out, mesh)?;
-    info(mesh, &links);
+    info(mesh, links);
     say(format!("written to {}", out.display()));
     Ok(())
 }

@@ -17,6 +17,7 @@ mod write;
 use std::path::Path;
 
 use crate::error::Result;
+use crate::io::regular;
 use crate::mesh::Mesh;
 
 pub use error::{At, Error};
@@ -28,7 +29,7 @@ pub use write::{to_text, write};
 /// Cells come in the order of their element numbers, nodes in that of their node numbers, groups in that of their
 /// physical tags, edges by group, cell and face; so the same mesh is the same [`Mesh`] from each version of the format.
 pub fn read(path: &Path) -> Result<Mesh> {
-    let bytes = std::fs::read(path).map_err(|why| {
+    let bytes = regular::bytes(path, u64::MAX).map_err(|why| {
         let place = crate::Place::file(path);
         crate::Error::at(place, format!("the mesh cannot be read: {why}"), "give the path of an .msh file of Gmsh")
     })?;

@@ -1,7 +1,9 @@
 //! The program `gmsh`, where a geometry is to be meshed in mid-run.
 
+use crate::io::regular;
+use crate::io::seal::{self, Seal};
 use crate::mesh::Mesh;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// What is wrong, and what would be right.
@@ -20,17 +22,36 @@ pub fn is_installed() -> bool {
 
 /// Meshes a geometry; `size` gives the size of the cells (m) at X, on the cells of `now`.
 ///
+/// A geometry is a program: Gmsh runs what it says, with the rights of the user. Its name goes to Gmsh as one argument, and never
+/// into a script or to a shell.
+///
 /// # Errors
-/// What Gmsh says, or that it is not there.
+/// What Gmsh says, or that it is not there; a geometry that is damaged.
 pub fn mesh(geometry: &Path, size: Option<&dyn Fn([f64; 2]) -> f64>, now: &Mesh) -> Result<Mesh, Fault> {
     let geometry = geometry.canonicalize().map_err(|why| fault(format!("{}: {why}", geometry.display())))?;
-    let folder = std::env::temp_dir().join(format!("dgmpm-gmsh-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).map_err(|why| fault(format!("{}: {why}", folder.display())))?;
-    let made = in_folder(&folder, &geometry, size, now);
-    // What Gmsh left has no further use; a folder that stays does no harm.
-    let _ = std::fs::remove_dir_all(&folder);
-    made
+    look(&geometry)?;
+    // A folder that only this user can look into, and whose name nobody can know before.
+    let folder = tempfile::Builder::new().prefix("dgmpm-gmsh-").tempdir().map_err(fault)?;
+    in_folder(folder.path(), &geometry, size, now)
 }
+
+/// Whether a geometry is a text file, and as it was written.
+///
+/// # Errors
+/// Why it is not.
+pub fn look(geometry: &Path) -> Result<(), Fault> {
+    let text = regular::text(geometry, LARGEST).map_err(|why| fault(format!("{}: {why}", geometry.display())))?;
+    match seal::check_text(text.as_bytes()) {
+        Seal::Broken => {
+            let what = format!("{} is damaged: its bytes are not those that were written", geometry.display());
+            Err((what, "if you have changed it, remove its last line, which has the hash"))
+        }
+        Seal::Whole | Seal::None => Ok(()),
+    }
+}
+
+/// Bytes of the largest geometry.
+const LARGEST: u64 = 1 << 30;
 
 fn in_folder(
     folder: &Path,
@@ -38,33 +59,35 @@ fn in_folder(
     size: Option<&dyn Fn([f64; 2]) -> f64>,
     now: &Mesh,
 ) -> Result<Mesh, Fault> {
-    let (script, out) = (folder.join("regrid.geo"), folder.join("regrid.msh"));
-    let mut text = format!("Merge \"{}\";\n", geometry.display());
+    let out = folder.join("regrid.msh");
+    let mut gmsh = Command::new("gmsh");
+    gmsh.current_dir(folder).args(["-2", "-v", "1", "-format", "msh41", "-o"]).arg(&out).arg(geometry);
     if let Some(size) = size {
-        text += &size_field_script(&folder.join("size.pos"), size, now)?;
+        write_size_field(folder, size, now)?;
+        gmsh.arg(SCRIPT);
     }
-    std::fs::write(&script, text).map_err(fault)?;
-    let run = Command::new("gmsh").args(["-2", "-v", "1", "-format", "msh41", "-o"]).arg(&out).arg(&script).output();
-    let run = run.map_err(|why| {
+    let run = gmsh.output().map_err(|why| {
         let remedy =
             "install Gmsh (https://gmsh.info, or `pip install gmsh`) so that `gmsh` is on the path, or give `mesh`";
         (format!("cannot run `gmsh`: {why}"), remedy)
     })?;
     if !run.status.success() {
         let said = String::from_utf8_lossy(&run.stderr);
-        return Err(fault(format!("gmsh failed ({}): {}", run.status, said.lines().next().unwrap_or_default())));
+        let line = said.lines().find(|line| line.contains("rror")).or(said.lines().next()).unwrap_or_default();
+        return Err(fault(format!("gmsh failed ({}): {line}", run.status)));
     }
     crate::io::read_mesh(&out).map_err(fault)
 }
 
-/// Writes the size field; the lines of a script that take it as the size of the cells.
-fn size_field_script(field: &PathBuf, size: &dyn Fn([f64; 2]) -> f64, now: &Mesh) -> Result<String, Fault> {
-    std::fs::write(field, size_field(size, now)).map_err(fault)?;
-    Ok(format!(
-        "Merge \"{}\";\nField[1] = PostView;\nField[1].ViewIndex = 0;\nBackground Field = 1;\n\
-         Mesh.MeshSizeExtendFromBoundary = 0;\nMesh.MeshSizeFromPoints = 0;\n",
-        field.display()
-    ))
+/// The script that takes the size field as the size of the cells.
+const SCRIPT: &str = "size.geo";
+
+/// Writes the size field, and the script for it.
+fn write_size_field(folder: &Path, size: &dyn Fn([f64; 2]) -> f64, now: &Mesh) -> Result<(), Fault> {
+    let script = "Merge \"size.pos\";\nField[1] = PostView;\nField[1].ViewIndex = 0;\nBackground Field = 1;\n\
+                  Mesh.MeshSizeExtendFromBoundary = 0;\nMesh.MeshSizeFromPoints = 0;\n";
+    std::fs::write(folder.join("size.pos"), size_field(size, now)).map_err(fault)?;
+    std::fs::write(folder.join(SCRIPT), script).map_err(fault)
 }
 
 /// The size at the nodes of a mesh as a view of Gmsh: two triangles a cell.

@@ -5,11 +5,12 @@ use std::fmt::Write;
 use std::path::Path;
 
 use crate::error::Result;
+use crate::io::pending::write_text;
 use crate::mesh::Mesh;
 
-/// Writes a mesh as MSH 4.1 text.
+/// Writes a mesh as MSH 4.1 text: the whole file, or nothing.
 pub fn write(mesh: &Mesh, path: &Path) -> Result<()> {
-    std::fs::write(path, to_text(mesh)).map_err(|why| crate::Error::output(path, why))
+    write_text(path, &to_text(mesh))
 }
 
 /// The MSH 4.1 text of a mesh: one curve per boundary group, one surface per cell group, both numbered from 1.

@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::io::grid::{Field, HighOrderGrid, Kind, check_fields, lagrange_quad_lattice};
 use crate::io::hdf5;
 use crate::io::pending::Pending;
+use crate::io::seal;
 
 /// A series that is being written; its files appear at [`Series::finish`].
 pub struct Series {
@@ -99,6 +100,7 @@ impl Series {
     pub fn finish(self) -> Result<()> {
         let Self { path, h5, pending, file, grids, split, steps } = self;
         file.flush().and_then(|()| file.close()).map_err(|e| Error::output(&h5, hdf5::reason(&e)))?;
+        seal::put(pending.path()).map_err(|e| Error::output(&h5, e))?;
         pending.commit()?;
         let file = file_name(&h5);
         write_document(&path, |xml| {

@@ -1,15 +1,32 @@
 //! Cells cut, and cells of a grid of lines joined.
 
 use super::lines::grid_of_lines;
-use super::{Rule, Values};
+use super::{Present, Rule, Values};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::regrid::TensorGrid;
 
-/// Each cell of a mesh cut into k x k.
-pub(super) fn finer(of: &Values, rule: &dyn Rule, mesh: &Mesh) -> Result<Mesh> {
-    let k = of.integer("refine");
-    rule.has_room("refine", mesh.cells.len().saturating_mul(k * k))?;
+/// How many times the cells of the start a mesh may have by `refine`: five halvings of their size. A rule that fires over and
+/// over would fill any memory.
+const MOST: usize = 1024;
+
+/// Each cell of the present mesh cut into k x k.
+pub(super) fn finer(of: &Values, rule: &dyn Rule, present: &Present) -> Result<Mesh> {
+    let (k, mesh) = (of.integer("refine"), present.view.mesh);
+    let cells = mesh.cells.len().saturating_mul(k * k);
+    if cells / MOST > present.start {
+        let what = format!(
+            "{cells} cells would be more than {MOST} times the {} of the start; `refine` cuts the cells that are there each \
+             time that it is due",
+            present.start
+        );
+        return Err(rule.wrong(
+            "refine",
+            what,
+            "let it be due less often (`at`), join cells by `coarsen` between, or start finer",
+        ));
+    }
+    rule.has_room("refine", cells)?;
     Ok(mesh.refined(k))
 }
 

@@ -1,9 +1,9 @@
 //! Mesh files, and where the files of a rule go in the folder of a run.
 
 use super::{Present, Rule, Values};
-use crate::error::{Error, Result};
-use crate::io::pending::Pending;
-use crate::io::{mesh_file, read_mesh};
+use crate::error::{Error, Place, Result};
+use crate::io::pending::{Pending, write_text};
+use crate::io::{mesh_file, read_mesh, regular, seal};
 use crate::mesh::Mesh;
 use std::path::Path;
 
@@ -23,20 +23,43 @@ pub const MESHES: Stored = Stored {
 };
 
 /// A geometry, copied.
-pub const GEOMETRY: Stored = Stored { name: |rule, _| format!("regrid_{rule}.geo"), store: copy };
+pub const GEOMETRY: Stored =
+    Stored { name: |rule, _| format!("regrid_{rule}.geo"), store: |from, to| copy_text(from, to, seal::GEO) };
 
-/// Copies a file, unless it is there already.
+/// Whether two paths are one file.
+fn is_same(from: &Path, to: &Path) -> bool {
+    from.canonicalize().ok().is_some_and(|from| to.canonicalize().is_ok_and(|to| to == from))
+}
+
+/// Copies a regular file, unless it is there already. It appears whole, and takes the place of a link of its name.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// A file that cannot be read or written.
 pub fn copy(from: &Path, to: &Path) -> Result<()> {
-    if from.canonicalize().ok().is_some_and(|from| to.canonicalize().is_ok_and(|to| to == from)) {
+    if is_same(from, to) {
         return Ok(());
     }
+    regular::about(from).map_err(|why| Error::at(Place::file(from), why, "give a file"))?;
     let pending = Pending::new(to)?;
     std::fs::copy(from, pending.path()).map_err(|why| Error::output(to, why))?;
     pending.commit()
 }
+
+/// Copies a text file, unless it is there already, with a seal as a comment in its last line.
+///
+/// # Errors
+/// A file that is no text, or cannot be written.
+pub fn copy_text(from: &Path, to: &Path, comment: [&str; 2]) -> Result<()> {
+    if is_same(from, to) {
+        return Ok(());
+    }
+    let text =
+        regular::text(from, LARGEST_TEXT).map_err(|why| Error::at(Place::file(from), why, "give a text file"))?;
+    write_text(to, &seal::text(&text, comment))
+}
+
+/// Bytes of the largest text that is copied.
+const LARGEST_TEXT: u64 = 1 << 30;
 
 pub(super) fn make(of: &Values, rule: &dyn Rule, count: usize, _: &Present) -> Result<Mesh> {
     let files = of.texts("mesh");

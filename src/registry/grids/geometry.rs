@@ -22,5 +22,5 @@ pub(super) fn check(of: &Values, rule: &dyn Rule, _: &Mesh) -> Result<()> {
     if !rule.resolve(path).is_file() {
         return Err(rule.wrong("geo", format!("there is no file {path}"), "the path is relative to the scene"));
     }
-    Ok(())
+    gmsh::program::look(&rule.resolve(path)).map_err(|(what, remedy)| rule.wrong("geo", what, remedy))
 }

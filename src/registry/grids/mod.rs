@@ -9,7 +9,7 @@ mod rectangles;
 mod shift;
 mod strips;
 
-pub use files::{Stored, copy};
+pub use files::{Stored, copy, copy_text};
 pub use fronts::fronts;
 pub use strips::FRONT;
 
@@ -41,6 +41,8 @@ pub struct Present<'a> {
     pub cloud: &'a Cloud,
     /// The material of each cell.
     pub material: &'a [usize],
+    /// How many cells the run began with.
+    pub start: usize,
 }
 
 /// A `[[regrid]]` in its scene.
@@ -113,7 +115,7 @@ pub static GRIDS: Table<Grid> = Table::new(&[
         about: "each cell of the present mesh becomes k x k cells",
         parameters: &[Parameter::required("refine", "k", "", FACTOR)],
         check: ANY,
-        build: Grid { repeats: true, ..by(|of, rule, _, present| cells::finer(of, rule, present.view.mesh)) },
+        build: Grid { repeats: true, ..by(|of, rule, _, present| cells::finer(of, rule, present)) },
     },
     Entry {
         name: "coarsen",

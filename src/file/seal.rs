@@ -1,0 +1,129 @@
+//! A checksum at the end of a file. It shows damage before the HDF5 library reads the file: on a damaged file the library
+//! may allocate very much memory or crash.
+//!
+//! The seal of an HDF5 file is one line of text after the last byte of HDF5. Every HDF5 library ignores it. A program that changes
+//! the file through HDF5 cuts the seal off; the file is then read only where the user trusts it ([`trust`]). A text file has its seal
+//! as a comment in its last line ([`text`]).
+//!
+//! A seal shows damage. It does not show who wrote a file: anyone can compute a hash.
+
+use std::fs::{File, OpenOptions};
+use std::io::{Read, Result, Seek, SeekFrom, Write};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The text before the 64 hexadecimal digits. The digits are the blake3 hash of all bytes before the seal.
+const MARK: &[u8] = b"\ndgmpm-seal ";
+/// Hexadecimal digits of a hash.
+const DIGITS: usize = 64;
+/// Bytes of a seal: the mark, the digits, an end of line.
+const LENGTH: u64 = (MARK.len() + DIGITS + 1) as u64;
+
+/// Whether a file is as it was when it was sealed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Seal {
+    /// It has a seal, and its bytes agree with it.
+    Whole,
+    /// It has a seal, but its bytes do not agree with it: it is damaged.
+    Broken,
+    /// It has no seal.
+    None,
+}
+
+/// Whether files without a seal are read.
+static TRUSTED: AtomicBool = AtomicBool::new(false);
+
+/// From here on HDF5 files without a seal are read too: the user knows where they come from (`--trust`).
+pub fn trust() {
+    TRUSTED.store(true, Ordering::Relaxed);
+}
+
+/// Whether [`trust`] has been called.
+pub fn is_trusted() -> bool {
+    TRUSTED.load(Ordering::Relaxed)
+}
+
+/// Adds the seal to a file that is complete.
+pub fn put(path: &Path) -> Result<()> {
+    let mut file = OpenOptions::new().read(true).append(true).open(path)?;
+    let length = file.metadata()?.len();
+    let digits = digits(&mut file, length)?;
+    file.write_all(&[MARK, digits.as_bytes(), b"\n"].concat())
+}
+
+/// Checks the seal of a file.
+pub fn check(path: &Path) -> Result<Seal> {
+    let mut file = File::open(path)?;
+    let Some(length) = file.metadata()?.len().checked_sub(LENGTH) else { return Ok(Seal::None) };
+    file.seek(SeekFrom::Start(length))?;
+    let mut seal = Vec::new();
+    file.read_to_end(&mut seal)?;
+    let Some(rest) = seal.strip_prefix(MARK) else { return Ok(Seal::None) };
+    let holds = rest.strip_suffix(b"\n") == Some(digits(&mut file, length)?.as_bytes());
+    Ok(if holds { Seal::Whole } else { Seal::Broken })
+}
+
+fn digits(file: &mut File, length: u64) -> Result<String> {
+    file.seek(SeekFrom::Start(0))?;
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(file.take(length))?;
+    Ok(hasher.finalize().to_hex().to_string())
+}
+
+/// What begins and ends a comment of TOML and of tables of loads.
+pub const TOML: [&str; 2] = ["# ", ""];
+/// The same of Gmsh.
+pub const GEO: [&str; 2] = ["// ", ""];
+/// The same of XML.
+pub const XML: [&str; 2] = ["<!-- ", " -->"];
+
+/// A text with its seal as a comment in its last line; `[open, close]` are what begins and ends a comment.
+pub fn text(text: &str, [open, close]: [&str; 2]) -> String {
+    let text = unsealed(text);
+    let end = if text.is_empty() || text.ends_with('\n') { "" } else { "\n" };
+    let whole = format!("{text}{end}");
+    let digits = blake3::hash(whole.as_bytes()).to_hex();
+    format!("{whole}{open}dgmpm-seal {digits}{close}\n")
+}
+
+/// Where the last line begins, and its words after the mark of a seal.
+fn last_line(text: &[u8]) -> Option<(usize, &[u8])> {
+    let mark = MARK.trim_ascii_start();
+    let line = text.trim_ascii_end();
+    let start = line.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
+    let at = line[start..].windows(mark.len()).position(|window| window == mark)?;
+    Some((start, &line[start + at + mark.len()..]))
+}
+
+/// Checks the seal of a text.
+pub fn check_text(text: &[u8]) -> Seal {
+    let Some((start, found)) = last_line(text) else { return Seal::None };
+    let wanted = blake3::hash(&text[..start]).to_hex();
+    if found.get(..DIGITS) == Some(wanted.as_bytes()) { Seal::Whole } else { Seal::Broken }
+}
+
+/// A text without the line of its seal.
+pub fn unsealed(text: &str) -> &str {
+    last_line(text.as_bytes()).and_then(|(start, _)| text.get(..start)).unwrap_or(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_byte_of_a_sealed_text_is_held_but_for_those_of_the_comment() {
+        let whole = text("a = 1\nb = 2", ["# ", ""]);
+        assert!(whole.starts_with("a = 1\nb = 2\n# dgmpm-seal "), "{whole}");
+        assert_eq!(check_text(whole.as_bytes()), Seal::Whole);
+        assert_eq!(text(&whole, ["# ", ""]), whole, "sealed twice");
+        for at in 0.."a = 1\nb = 2\n".len() {
+            let mut other = whole.clone().into_bytes();
+            other[at] ^= 1;
+            assert_eq!(check_text(&other), Seal::Broken, "{at}");
+        }
+        for text in ["", "\n", "a = 1\n", "# dgmpm\n"] {
+            assert_eq!(check_text(text.as_bytes()), Seal::None, "{text:?}");
+        }
+    }
+}
