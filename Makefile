@@ -4,8 +4,9 @@
 # make hard-cases   shocks, corners, long runs and other hard cases: docs/hard_cases.md and its pictures
 # make effects  what each effect costs the standard scene: docs/effects.md
 # make proof    that an effect which a scene does not ask for costs nothing (half an hour)
+# make faults   kills, full disks, corrupted bytes: the table of docs/reliability.md (some minutes)
 # make bench    the speed of the step on this machine: tables and roofline of docs/performance.md
-.PHONY: help setup build demo test study hard-cases effects proof bench clean
+.PHONY: help setup build demo test study hard-cases effects proof faults bench clean
 
 help:
 	@echo "make demo    install what is missing, build, run the paper's impact with all methods, draw its figures"
@@ -14,6 +15,7 @@ help:
 	@echo "make hard-cases   run all hard cases (twenty minutes) and write docs/hard_cases.md and docs/hard/, again"
 	@echo "make effects  measure what each effect costs (some minutes): src/effects/measured.csv, docs/effects.md"
 	@echo "make proof   show that what a scene does not ask for costs nothing (half an hour)"
+	@echo "make faults  kill runs, fill disks, corrupt files (some minutes) and write docs/reliability.md again"
 	@echo "make bench   measure the speed (ten minutes): runs/bench/, docs/performance.md, docs/img/roofline.svg"
 	@echo "make build   the program; its last line says where cargo has put it"
 	@echo "make setup   only install what is missing (Debian packages, .venv)"
@@ -43,6 +45,9 @@ effects: build
 
 proof: setup
 	@tools/proof.sh
+
+faults: build
+	@DGMPM="$$(tools/program.sh)" python3 tools/faults.py
 
 bench: build
 	@tools/bench.sh

@@ -21,6 +21,8 @@ pub struct Table {
     file: File,
     /// Bytes of the file, which end with a whole row. None: the file may hold the rows of a run that is resumed.
     length: Option<u64>,
+    /// The hash of these bytes, so that a table that was changed in the meantime is not gone on with.
+    hash: blake3::Hasher,
     /// Rows that are not in the file yet.
     rows: String,
 }
@@ -46,8 +48,8 @@ impl Table {
         let file = OpenOptions::new().create(true).write(true).truncate(false).open(path).map_err(fail)?;
         let empty = file.metadata().map_err(fail)?.len() == 0;
         let header = columns.join(",") + "\n";
-        let (path, rows) = (path.to_owned(), String::new());
-        let mut table = Self { path, columns: columns.len(), header, file, length: None, rows };
+        let (path, rows, hash) = (path.to_owned(), String::new(), blake3::Hasher::new());
+        let mut table = Self { path, columns: columns.len(), header, file, length: None, hash, rows };
         if empty {
             table.flush()?;
         }
@@ -95,6 +97,7 @@ impl Table {
             let _ = self.file.set_len(length);
         } else {
             self.length = Some(length + self.rows.len() as u64);
+            self.hash.update(self.rows.as_bytes());
             self.rows.clear();
         }
         written
@@ -109,28 +112,30 @@ impl Table {
             self.flush()?;
         }
         self.file.sync_data().map_err(|e| Error::output(&self.path, e))?;
-        to.count(self.length.unwrap_or(0) as usize);
+        to.count(self.length.unwrap_or(0) as usize).text(self.hash.finalize().to_hex().as_str());
         Ok(())
     }
 
     /// Goes on behind the last row that was saved; what came after it is cut off.
     ///
     /// # Errors
-    /// A file that has lost rows, or that has other columns.
+    /// A file that has lost or changed rows, or that has other columns.
     pub fn restore(&mut self, from: &mut Saved) -> Result<()> {
-        let length = from.count()? as u64;
+        let (length, digits) = (from.count()? as u64, from.text()?);
         let fail = |e: std::io::Error| Error::output(&self.path, e);
         let text = std::fs::read(&self.path).map_err(fail)?;
         let kept = usize::try_from(length).ok().and_then(|length| text.get(..length));
-        let fits = |kept: &[u8]| {
+        let columns = self.columns;
+        let fits = |kept: &&[u8]| {
             let header = kept.split(|c| *c == b'\n').next().unwrap_or_default();
-            kept.ends_with(b"\n") && header.iter().filter(|c| **c == b',').count() + 1 == self.columns
+            header.iter().filter(|c| **c == b',').count() + 1 == columns && kept.ends_with(b"\n")
         };
-        let whole = kept.is_some_and(fits);
-        if !whole {
-            let what = format!("{} has lost rows that the run had written", self.path.display());
+        let hash = kept.filter(fits).map(|kept| blake3::Hasher::new().update(kept).clone());
+        let Some(hash) = hash.filter(|hash| hash.finalize().to_hex().as_str() == digits) else {
+            let what = format!("{} has lost or changed rows that the run had written", self.path.display());
             return Err(Error::input(what, "put the file back, or run the scene again with --force"));
-        }
+        };
+        self.hash = hash;
         self.file.set_len(length).map_err(fail)?;
         self.length = Some(length);
         Ok(())
@@ -185,7 +190,7 @@ mod tests {
         add(&mut table(&path), 7..8);
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "t,x\n7e0,5e-1\n");
         let lost = table(&path).restore(&mut words.saved()).unwrap_err();
-        assert!(lost.to_string().contains("has lost rows"), "{lost}");
+        assert!(lost.to_string().contains("has lost or changed rows"), "{lost}");
     }
 
     #[test]

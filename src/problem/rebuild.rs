@@ -75,7 +75,9 @@ impl Pause for Regrids<'_> {
         let mut files: Vec<_> = self.files.iter().collect();
         files.sort_unstable_by_key(|(key, _)| *key);
         to.count(files.len());
-        files.into_iter().for_each(|(key, files)| drop(to.text(key).text(&files.mesh).text(&files.cloud)));
+        for (key, files) in files {
+            to.text(key).text(&files.mesh).text(&files.cloud);
+        }
         self.table.as_mut().map_or(Ok(()), |table| table.save(to))
     }
 

@@ -62,11 +62,10 @@ impl Reading {
 
     /// Saves what is known.
     pub fn save(&self, to: &mut Words) {
-        let pair =
-            |to: &mut Words, pair: Option<[f64; 2]>| drop(to.flag(pair.is_some()).reals(&pair.unwrap_or_default()));
         to.real(self.value).flag(self.settled).reals(&self.sum);
-        pair(to, self.last);
-        pair(to, self.first);
+        for pair in [self.last, self.first] {
+            to.flag(pair.is_some()).reals(&pair.unwrap_or_default());
+        }
     }
 
     /// Goes on from what [`Reading::save`] has saved.

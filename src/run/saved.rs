@@ -14,7 +14,9 @@ impl Report {
         to.count(self.steps).real(self.updates).real(self.min_j).reals(&self.dt).reals(&self.seconds());
         to.reals(&self.phases.seconds).reals(&self.phases.parts).real(self.rescue);
         to.real(self.regrids.0).count(self.regrids.1).count(self.bytes).count(self.observed.len());
-        self.observed.iter().for_each(|(seconds, count)| drop(to.real(*seconds).count(*count)));
+        for (seconds, count) in &self.observed {
+            to.real(*seconds).count(*count);
+        }
         to.flag(self.first.is_some());
         self.first.iter().for_each(|first| save_totals(first, to));
         to.flag(self.balance.is_some());

@@ -88,7 +88,7 @@ fn of_parts(bench: &Bench, parts: &Parts, conditions: &[(&str, &str)], velocity:
     parts.write(&bench.path("."));
     let conditions: String = conditions.iter().map(|(group, kind)| format!("{{group=\"{group}\",{kind}}},")).collect();
     let text = format!(
-        "mesh.file = \"mesh.msh\"\nboundary = [{conditions}]\n[[material]]\nlaw = \"neo-hookean\"\nyoung = 2e11\npoisson = 0.3\n\
+        "title = \"parts\"\nmesh.file = \"mesh.msh\"\nboundary = [{conditions}]\n[[material]]\nlaw = \"neo-hookean\"\nyoung = 2e11\npoisson = 0.3\n\
          density = 7800\n[initial]\nvelocity = [{velocity}]\n[scheme]\nmethod = \"ader-dgmpm\"\ndegree = 2\n[time]\nend = 2e-4\n\
          [[output]]\nkind = \"ledger\"\n[[output]]\nkind = \"fields\"\nevery = 5e-5\n[[output]]\nkind = \"force\"\nname = \"f\"\n"
     );

@@ -52,7 +52,7 @@ fn another_scene_is_refused_with_the_key_that_differs() {
     assert!(message.contains("is not the folder of a run"), "{message}");
     fs::write(bench.path("r/ledger.csv"), "step,t\n").unwrap();
     let message = bench.fail(2, "resume r");
-    assert!(message.contains("ledger.csv has lost rows"), "{message}");
+    assert!(message.contains("ledger.csv has lost or changed rows"), "{message}");
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn a_flipped_byte_in_a_stored_file_is_found_or_does_no_harm() {
     fs::remove_file(&kept[1]).unwrap();
     let last = kept[0].file_name().unwrap().to_str().unwrap().to_owned();
     // `make faults` does two hundred.
-    let files = ["mesh.h5", "cloud.h5", "operators.h5", "scene.toml", &format!("checkpoints/{last}")];
+    let files = ["mesh.h5", "cloud.h5", "operators.h5", "scene.toml", "ledger.csv", &format!("checkpoints/{last}")];
     for (number, file) in files.into_iter().flat_map(|file| [file; 2]).enumerate() {
         let share = (0.137 + 0.391 * number as f64).fract();
         copy(&bench.path("whole"), &bench.path("r"));

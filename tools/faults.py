@@ -1,0 +1,286 @@
+#!/usr/bin/env python3
+"""The fault campaign: a small run with checkpoints, outputs, regrids and plasticity is killed, runs out of disk, and finds corrupted
+files. Each time its results are compared byte by byte with those of a run that nothing has disturbed. The figures go to standard
+output and into docs/reliability.md; the exit code is 1 where a result was lost or wrong.
+
+usage: DGMPM=path/to/dgmpm tools/faults.py [--kills 100] [--corruptions 200] [--seed 1]
+"""
+import argparse
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+PROGRAM = str(Path(os.environ["DGMPM"]).resolve())
+PAGE = Path(__file__).resolve().parent.parent / "docs" / "reliability.md"
+BEGIN, END = "<!-- begin of make faults -->", "<!-- end of make faults -->"
+
+SCENE = """title = "fault campaign"
+mesh.rectangle = { size = [1.0, 0.5], cells = [6, 3] }
+boundary = [
+    { group = "left", kind = "unilateral", gap = 1e-3 },
+    { group = "bottom", kind = "symmetry" },
+    { group = "right", kind = "free" },
+    { group = "top", kind = "free" },
+]
+[[material]]
+law = "j2"
+young = 2e11
+poisson = 0.3
+density = 7800.0
+yield_stress = 4e8
+hardening = 1e9
+[initial]
+velocity = ["-200", "0"]
+[scheme]
+method = "ader-dgmpm"
+degree = 2
+[checkpoint]
+every_steps = 1
+[time]
+end = 1.5e-4
+[[output]]
+kind = "fields"
+every_steps = 10
+[[output]]
+kind = "ledger"
+[[output]]
+kind = "line"
+name = "bottom"
+from = [0.0, 0.0]
+to = [1.0, 0.0]
+samples = 9
+every_steps = 3
+[[output]]
+kind = "force"
+name = "walls"
+[[output]]
+kind = "extreme"
+name = "peak"
+field = "von_mises"
+[[quantity]]
+name = "mean_force"
+kind = "force"
+group = "left"
+over = "run"
+statistic = "mean"
+[[regrid]]
+every = 6e-5
+refine = 2
+"""
+
+
+def call(folder, *arguments):
+    """Runs the program in a folder: exit code and messages."""
+    done = subprocess.run([PROGRAM, *arguments], cwd=folder, capture_output=True, text=True, timeout=600)
+    return done.returncode, done.stderr
+
+
+def without_clocks(text):
+    """Numbers of summary.json that no clock has a part in."""
+    words = ("second", "phases", "memory", "threads", "effects", "bytes")
+    return {key: value for key, value in json.loads(text).items() if not any(word in key for word in words)}
+
+
+def results(root):
+    """What a run has written, but for clocks, matrices and checkpoints."""
+    out = {}
+    for path in sorted(root.rglob("*")):
+        name = str(path.relative_to(root))
+        if path.is_dir() or name.startswith("checkpoints/") or name in ("operators.h5", ".dgmpm"):
+            continue
+        data = path.read_bytes()
+        if name == "summary.json":
+            data = repr(without_clocks(data)).encode()
+        if name == "regrid.csv":  # Its last columns are seconds.
+            data = b"\n".join(b",".join(line.split(b",")[:12]) for line in data.splitlines())
+        out[name] = data
+    return out
+
+
+def differences(one, two):
+    """Files that differ between two results."""
+    return sorted(name for name in one.keys() | two.keys() if one.get(name) != two.get(name))
+
+
+def kills(work, whole, seconds, count, dice):
+    """SIGKILL at random moments; each time the run goes on."""
+    lost, wrong, done, runs, fresh = 0, 0, 0, 0, 0
+    moments = []
+    folder = work / "killed"
+    while done < count or folder.exists():
+        has_checkpoint = any((folder / "checkpoints").glob("*.h5")) if folder.exists() else False
+        command = ["resume", "killed"] if has_checkpoint else ["run", "case.toml", "--out", "killed", "--force"]
+        fresh += not has_checkpoint
+        child = subprocess.Popen(
+            [PROGRAM, *command], cwd=work, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        )
+        if done < count:
+            pause = dice.uniform(0, 0.5 * seconds)
+            time.sleep(pause)
+            if child.poll() is None:
+                child.send_signal(signal.SIGKILL)
+                child.communicate()
+                done += 1
+                moments.append(pause)
+                continue
+        errors = child.communicate()[1]
+        if child.returncode == 2 and "at its end" in errors:  # Killed after the last checkpoint: it repeats the end.
+            older = sorted((folder / "checkpoints").glob("*.h5"))
+            older[-1].unlink()
+            continue
+        runs += 1
+        if child.returncode != 0:
+            lost += 1
+            print("lost:", errors, file=sys.stderr)
+        elif differences(whole, results(folder)):
+            wrong += 1
+            print("wrong:", differences(whole, results(folder)), file=sys.stderr)
+        shutil.rmtree(folder)
+    return {"kills": done, "runs": runs, "from the start": fresh, "lost": lost, "wrong": wrong}
+
+
+def full_disks(work, whole, sizes):
+    """Disks of some sizes that run full; then there is space again, and the run goes on."""
+    disk = work / "disk"
+    disk.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4k", "none", str(disk)], capture_output=True)
+    if mounted.returncode != 0:
+        print("full disks: skipped, mounting a tmpfs needs the rights of root")
+        return None
+    out = {"disks": 0, "ran full": 0, "resumed": 0, "from the start": 0, "lost": 0, "wrong": 0, "files": set()}
+    try:
+        for size in sizes:
+            subprocess.run(["mount", "-o", f"remount,size={size}k", str(disk)], check=True)
+            out["disks"] += 1
+            code, errors = call(work, "run", "case.toml", "--out", "disk/r", "--force")
+            if code != 0:
+                messages = errors.count("error: ")
+                good = code == 5 and messages == 1 and "cannot write" in errors
+                out["ran full"] += 1
+                if not good:
+                    out["lost"] += 1
+                    print(f"{size} KiB: exit code {code}, {errors}", file=sys.stderr)
+                place = errors.split("cannot write ")[-1].split(": ")[0]
+                out["files"].add("/".join(Path(place).parts[2:3]) or place)
+                subprocess.run(["mount", "-o", "remount,size=64m", str(disk)], check=True)
+                again = any((disk / "r" / "checkpoints").glob("*.h5"))
+                out["resumed" if again else "from the start"] += 1
+                command = ["resume", "disk/r"] if again else ["run", "case.toml", "--out", "disk/r", "--force"]
+                code, errors = call(work, *command)
+            if code != 0:
+                out["lost"] += 1
+                print(f"{size} KiB, again: exit code {code}, {errors}", file=sys.stderr)
+            elif differences(whole, results(disk / "r")):
+                out["wrong"] += 1
+                print(f"{size} KiB: {differences(whole, results(disk / 'r'))}", file=sys.stderr)
+            shutil.rmtree(disk / "r", ignore_errors=True)
+    finally:
+        subprocess.run(["umount", str(disk)])
+    out["files"] = ", ".join(sorted(out["files"]))
+    return out
+
+
+def corruptions(work, whole, count, dice):
+    """A flipped bit in a file of a stopped run, which is then resumed and exported."""
+    stopped = work / "stopped"
+    shutil.copytree(work / "whole", stopped)
+    sorted((stopped / "checkpoints").glob("*.h5"))[-1].unlink()
+    kinds = {}
+    for path in stopped.rglob("*"):
+        name = str(path.relative_to(stopped))
+        if path.is_file() and path.stat().st_size > 0:
+            kind = name.split("/")[0] if "/" in name else "".join(c for c in name if not c.isdigit()).replace("_.", ".")
+            kinds.setdefault(kind, []).append(name)
+    reference = dict(whole)
+    out = {kind: {"flips": 0, "found": 0, "harmless": 0, "wrong": 0} for kind in sorted(kinds)}
+    for number in range(count):
+        kind = sorted(kinds)[number % len(kinds)]
+        name = dice.choice(kinds[kind])
+        folder = work / "flipped"
+        shutil.copytree(stopped, folder)
+        data = bytearray((folder / name).read_bytes())
+        data[dice.randrange(len(data))] ^= 1 << dice.randrange(8)
+        (folder / name).write_bytes(data)
+        code, errors = call(work, "resume", "flipped")
+        row = out[kind]
+        row["flips"] += 1
+        after = results(folder)
+        kept = {file: data for file, data in after.items() if file != name}
+        same = all(kept[file] == reference.get(file) for file in kept) and len(after) == len(reference)
+        # The file itself, if the run has not written it again, is looked at by the commands that read it.
+        healed = after.get(name) == reference.get(name)
+        if code != 0 or "warning: " in errors:
+            row["found" if code in (0, 2) else "wrong"] += 1
+            if code not in (0, 2):
+                print(f"{name}: exit code {code}, {errors}", file=sys.stderr)
+        elif same and healed:
+            row["harmless"] += 1
+        elif same and name.endswith(".h5"):
+            code, errors = call(work, "export", "flipped", "--format", "vtu")
+            row["found" if code == 2 and "damaged" in errors else "wrong"] += 1
+        elif same and name == "scene.toml":
+            # A comment, a title, or what says the same: the results are the same.
+            row["harmless"] += 1
+        else:
+            row["wrong"] += 1
+            print(f"{name}: exit code {code}, differs: {differences(reference, after)}", file=sys.stderr)
+        shutil.rmtree(folder)
+    return out
+
+
+def table(head, rows):
+    """A table in Markdown."""
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--kills", type=int, default=100)
+    options.add_argument("--corruptions", type=int, default=200)
+    options.add_argument("--seed", type=int, default=1)
+    options = options.parse_args()
+    dice = random.Random(options.seed)
+    with tempfile.TemporaryDirectory() as folder:
+        work = Path(folder)
+        (work / "case.toml").write_text(SCENE)
+        start = time.time()
+        code, errors = call(work, "run", "case.toml", "--out", "whole")
+        assert code == 0, errors
+        seconds = time.time() - start
+        whole = results(work / "whole")
+        text = []
+        found = kills(work, whole, seconds, options.kills, dice)
+        bad = found["lost"] + found["wrong"]
+        text.append("SIGKILL at random moments, then `dgmpm resume`:\n\n" + table(found.keys(), [found.values()]))
+        size = sum(path.stat().st_size for path in (work / "whole").rglob("*") if path.is_file()) // 1024
+        disks = full_disks(work, whole, [max(8, size * k // 24) for k in range(1, 25)])
+        if disks:
+            bad += disks["lost"] + disks["wrong"]
+            text.append("A disk (tmpfs) that runs full, and then has space:\n\n" + table(disks.keys(), [disks.values()]))
+        flips = corruptions(work, whole, options.corruptions, dice)
+        bad += sum(row["wrong"] for row in flips.values())
+        rows = [[f"`{kind}`", *row.values()] for kind, row in flips.items()]
+        rows.append(["all", *(sum(row[key] for row in flips.values()) for key in next(iter(flips.values())))])
+        text.append(
+            "A flipped bit in a file of a stopped run, then `dgmpm resume` and `dgmpm export`:\n\n"
+            + table(["file or folder", *next(iter(flips.values()))], rows)
+        )
+    text = "\n\n".join(text)
+    print(text)
+    page = PAGE.read_text()
+    before, after = page.split(BEGIN)[0], page.split(END)[1]
+    PAGE.write_text(f"{before}{BEGIN}\n\n{text}\n\n{END}{after}")
+    print(f"{bad} results lost or wrong")
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
