@@ -35,6 +35,9 @@ pub fn cases(bench: &Bench) -> Vec<(String, Vec<String>)> {
     let own = |name: &str, all: &[&str]| (name.to_owned(), all.iter().map(|word| (*word).to_owned()).collect());
     cases.push(own("4294836225 cells", &["mesh", "rectangle", "--size", "1,1", "--cells", "65535,65535"]));
     cases.push(own("mesh.rectangle.cells", &["run", "good.toml", "--set", "mesh.rectangle.cells=[99999,99999]"]));
+    // A later grid is looked at before the first step.
+    let later = "regrid=[{at=[5e-5],rectangle={size=[1,0.5],cells=[99999,99999]}}]";
+    cases.push(own("5e-5],rectangle", &["run", "good.toml", "--set", later, "--out", "never"]));
     cases
 }
 

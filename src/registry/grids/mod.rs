@@ -101,14 +101,20 @@ pub static GRIDS: Table<Grid> = Table::new(&[
         about: "a rectangle of equal cells",
         parameters: &[Parameter::required("rectangle", "the rectangle", "", Form::Table(RECTANGLE))],
         check: ANY,
-        build: by(|of, rule, count, _| rectangles::make(of, "rectangle", rule, count)),
+        build: Grid {
+            check: |of, rule, _| rectangles::check(of, "rectangle", rule),
+            ..by(|of, rule, count, _| rectangles::make(of, "rectangle", rule, count))
+        },
     },
     Entry {
         name: "rectangles",
         about: "rectangles that are used one after the other",
         parameters: &[Parameter::required("rectangles", "the rectangles", "", Form::Tables(RECTANGLE))],
         check: ANY,
-        build: by(|of, rule, count, _| rectangles::make(of, "rectangles", rule, count)),
+        build: Grid {
+            check: |of, rule, _| rectangles::check(of, "rectangles", rule),
+            ..by(|of, rule, count, _| rectangles::make(of, "rectangles", rule, count))
+        },
     },
     Entry {
         name: "refine",
