@@ -136,7 +136,7 @@ pub use material::{
 };
 pub use observe::{Field, NewGrid, Observer, Point, Schedule, Solution, View};
 pub use riemann::{Acoustic, AcousticCurl, Dual, Impedance, Looks, Medium, Riemann, Rusanov, Trace, star};
-pub use source::{BodyForce, Damping, PressurePulse, Source};
+pub use source::{BodyForce, Damping, PressurePulse, Source, Varies};
 pub use step::{Balance, Corrected, Correction, Flux, Law, Made, Notes, Rescue};
 
 // Exact solutions and errors.

@@ -161,8 +161,8 @@ impl Boundary for GapWall {
 struct Drag(f64);
 
 impl Source for Drag {
-    fn depends_on_velocity(&self) -> bool {
-        true
+    fn varies(&self) -> Varies {
+        Varies::VELOCITY
     }
 
     fn acceleration(&self, _: [f64; 2], _: f64, v: [f64; 2], _: usize) -> [f64; 2] {

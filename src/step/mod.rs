@@ -6,6 +6,7 @@
 //! read-only, [`State`] is all that changes, [`Work`] carries nothing from step to step: threads, restart and regrid follow
 //! from that.
 
+mod acceleration;
 mod across;
 mod at_points;
 mod balance;
