@@ -67,6 +67,8 @@
 //! A new law, flux, boundary condition, source, solution, output, quantity, grid, layout or limiter is one file and one entry of [`registry`]
 //! (`docs/extend.md`). The modules are private: what a user needs stands on the page of `pub use` below.
 
+// A program without an effect has code that nothing calls.
+#![cfg_attr(not(feature = "effects"), allow(dead_code, unused_imports))]
 #![deny(missing_docs)]
 // Links to private modules are for those who work on the crate: `cargo doc --document-private-items`.
 #![allow(rustdoc::private_intra_doc_links)]

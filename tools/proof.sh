@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Shows that an effect that a scene does not ask for costs nothing: the standard scene, on 8 x 8 cells and without any effect, under the
 # full program and under one that was built without the effect. Compares, with callgrind, the instructions of all blocks in all steps, and
-# the bits of fields and energies, which CSV files have. A build each (half an hour in all).
+# the bits of fields and energies, which CSV files have. A build each, with the kernels that callgrind can run (half an hour in all).
 # usage: tools/proof.sh [EFFECT..]    such as forces; all by default
 # Exit code 1: more than .1 % of instructions, or other bits.
 set -euo pipefail

@@ -217,7 +217,7 @@ impl Scheme {
     /// The same; the time of the result is `time`: t + dt, but for a rounding.
     fn step_to(&self, state: &State, survey: &Survey, dt: f64, time: f64, work: &mut Work) {
         let (begin, finish) = (|block: Begin| block.run(), |block: Finish| block.run());
-        if let Some(meetings) = &mut work.meetings {
+        if let (true, Some(meetings)) = (built::CONTACT, &mut work.meetings) {
             meetings.find(self, state);
         }
         match &self.method {

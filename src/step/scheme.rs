@@ -132,6 +132,11 @@ impl Scheme {
         Self { sources, ..self }
     }
 
+    /// Whether faces of the body act on each other.
+    pub fn has_contacts(&self) -> bool {
+        self.contacts.is_some()
+    }
+
     /// With what acts between pairs of boundary groups. The memory of a law is that of the conditions of its groups
     /// ([`crate::contact::Paired`]).
     ///
