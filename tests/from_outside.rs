@@ -8,7 +8,7 @@ use dgmpm::registry::{
 };
 use dgmpm::{
     Boundary, Corrected, Correction, FacePoint, Flux, Folder, Lane, Law, Looks, Made, Material, Medium, Moment, Past,
-    Problem, Quantity, Rank, Riemann, Rusanov, Scene, Seen, Setup, Source, Trace, Variable, star,
+    Problem, Quantity, Rank, Riemann, Rusanov, Scene, Seen, Setup, Source, Trace, Variable, Varies, star,
 };
 use std::path::Path;
 use std::sync::{Arc, Once};

@@ -71,6 +71,7 @@ pub use phase::{Part, Phase, Phases};
 pub use rescue::Rescue;
 pub use runge_kutta::Tableau;
 pub use scheme::{Method, Scheme};
+pub use segments::Overlap;
 pub use survey::{Speeds, Survey};
 pub use sweeps::Sweeps;
 
@@ -159,6 +160,16 @@ impl Work {
             corrections: corrections - rescue,
             rescue,
         }
+    }
+
+    /// The energy that contact and cohesive edges store in `state`, J/m.
+    pub fn stored_in_contact(&mut self, scheme: &Scheme, state: &State) -> f64 {
+        self.meetings.as_mut().map_or(0.0, |meetings| meetings.stored(scheme, state))
+    }
+
+    /// The deepest overlap of bodies in the steps so far; none where no condition pairs any.
+    pub fn overlap(&self) -> Option<Overlap> {
+        self.meetings.as_ref().map(|meetings| meetings.deepest)
     }
 
     /// Bytes held.

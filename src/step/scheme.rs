@@ -143,7 +143,7 @@ impl Scheme {
     /// # Errors
     /// An edge of a cut ([`crate::contact::Pairs::Initial`]) without its other side.
     pub fn with_pairings(self, pairings: &[Pairing]) -> Result<Self> {
-        let contacts = Contacts::new(&self.operators, pairings);
+        let contacts = Contacts::new(&self.operators, &self.laws, pairings);
         if let Some([a, b]) = contacts.as_ref().and_then(Contacts::without_partner) {
             let what = format!("the edge from {a:?} to {b:?} has no other side");
             return Err(Error::input(
