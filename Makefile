@@ -3,7 +3,7 @@
 # make study    what accuracy costs in time: tables and plots of docs/cost.md
 # make hard-cases   shocks, corners, long runs and other hard cases: docs/hard_cases.md and its pictures
 # make effects  what each effect costs the standard scene: docs/effects.md
-# make proof    that an effect which a scene does not ask for costs nothing (half an hour)
+# make proof    that effects which a scene does not ask for cost nothing (ten minutes)
 # make faults   kills, full disks, corrupted bytes: the table of docs/reliability.md (some minutes)
 # make bench    the speed of the step on this machine: tables and roofline of docs/performance.md
 .PHONY: help setup build demo test study hard-cases effects proof faults bench clean
@@ -14,7 +14,7 @@ help:
 	@echo "make study   measure what accuracy costs in time: the tables and plots of docs/cost.md, again"
 	@echo "make hard-cases   run all hard cases (twenty minutes) and write docs/hard_cases.md and docs/hard/, again"
 	@echo "make effects  measure what each effect costs (some minutes): src/effects/measured.csv, docs/effects.md"
-	@echo "make proof   show that what a scene does not ask for costs nothing (half an hour)"
+	@echo "make proof   show that what a scene does not ask for costs nothing (ten minutes)"
 	@echo "make faults  kill runs, fill disks, corrupt files (some minutes) and write docs/reliability.md again"
 	@echo "make bench   measure the speed (ten minutes): runs/bench/, docs/performance.md, docs/img/roofline.svg"
 	@echo "make build   the program; its last line says where cargo has put it"

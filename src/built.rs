@@ -1,5 +1,6 @@
 //! The effects that the program was built with: all of them, but for `make proof`, which compares programs with and without one to show
-//! that what a scene does not ask for costs nothing. A program without an effect refuses scenes that ask for it.
+//! that what a scene does not ask for costs nothing. A program without an effect refuses scenes that ask for it;
+//! entries of the registry that it was built without are unknown names.
 
 use crate::error::Error;
 
@@ -13,7 +14,8 @@ pub const SOURCES: bool = cfg!(feature = "effect-sources");
 pub const CORRECTIONS: bool = cfg!(feature = "effect-corrections");
 /// The control of the curl.
 pub const CURL: bool = cfg!(feature = "effect-curl");
-
+/// Contact of bodies, cracks that close, cohesive edges.
+pub const CONTACT: bool = cfg!(feature = "effect-contact");
 /// Refuses what is asked for and not there; `asked` has whether it is there, whether it is asked for, and its name.
 ///
 /// # Errors

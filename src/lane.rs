@@ -317,13 +317,14 @@ impl Kernel {
     #[cold]
     fn look(self) -> bool {
         let found = match self {
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", feature = "kernel-avx512"))]
             Kernel::Avx512 => is_x86_feature_detected!("avx512f"),
             #[cfg(target_arch = "x86_64")]
             Kernel::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
-            #[cfg(not(target_arch = "x86_64"))]
-            Kernel::Avx512 | Kernel::Avx2 => false,
-            Kernel::Portable | Kernel::Counting => true,
+            Kernel::Portable => true,
+            Kernel::Counting => cfg!(feature = "kernel-counting"),
+            #[allow(unreachable_patterns)]
+            _ => false,
         };
         FOUND.fetch_or(u8::from(found) << self as u8, Ordering::Relaxed);
         found
@@ -341,11 +342,12 @@ impl Kernel {
         let work = InPlace(&mut ManuallyDrop::new(work));
         match self {
             // SAFETY: the processor has the features.
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", feature = "kernel-avx512"))]
             Kernel::Avx512 if self.is_available() => unsafe { avx512::enter_avx512(work) },
             // SAFETY: the processor has the features.
             #[cfg(target_arch = "x86_64")]
             Kernel::Avx2 if self.is_available() => unsafe { avx2::enter_avx2(work) },
+            #[cfg(feature = "kernel-counting")]
             Kernel::Counting => enter_counted(work),
             _ => enter_portable(work),
         }
@@ -359,6 +361,7 @@ fn enter_portable<W: Work>(work: InPlace<W>) -> W::Out {
     work.take().run::<Portable>()
 }
 
+#[cfg(feature = "kernel-counting")]
 #[inline(never)]
 fn enter_counted<W: Work>(work: InPlace<W>) -> W::Out {
     work.take().run::<counted::Counted>()

@@ -67,6 +67,8 @@
 //! A new law, flux, boundary condition, source, solution, output, quantity, grid, layout or limiter is one file and one entry of [`registry`]
 //! (`docs/extend.md`). The modules are private: what a user needs stands on the page of `pub use` below.
 
+// A program without an effect has code that nothing calls.
+#![cfg_attr(not(feature = "effects"), allow(dead_code, unused_imports))]
 #![deny(missing_docs)]
 // All `unsafe` is in `lane`, which has the one exception (`tests/layers.rs` holds this).
 #![deny(unsafe_code)]
@@ -141,7 +143,7 @@ pub use material::{
 };
 pub use observe::{Field, NewGrid, Observer, Point, Schedule, Solution, View};
 pub use riemann::{Acoustic, AcousticCurl, Dual, Impedance, Looks, Medium, Riemann, Rusanov, Trace, star};
-pub use source::{BodyForce, Damping, PressurePulse, Source};
+pub use source::{BodyForce, Damping, PressurePulse, Source, Varies};
 pub use step::{Balance, Corrected, Correction, Flux, Law, Made, Notes, Rescue};
 pub use words::{Saved, Words};
 

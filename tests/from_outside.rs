@@ -8,7 +8,7 @@ use dgmpm::registry::{
 };
 use dgmpm::{
     Boundary, Corrected, Correction, FacePoint, Flux, Folder, Lane, Law, Looks, Made, Material, Medium, Moment, Past,
-    Problem, Quantity, Rank, Riemann, Rusanov, Scene, Seen, Setup, Source, Trace, Variable, star,
+    Problem, Quantity, Rank, Riemann, Rusanov, Scene, Seen, Setup, Source, Trace, Variable, Varies, star,
 };
 use std::path::Path;
 use std::sync::{Arc, Once};
@@ -161,8 +161,8 @@ impl Boundary for GapWall {
 struct Drag(f64);
 
 impl Source for Drag {
-    fn depends_on_velocity(&self) -> bool {
-        true
+    fn varies(&self) -> Varies {
+        Varies::VELOCITY
     }
 
     fn acceleration(&self, _: [f64; 2], _: f64, v: [f64; 2], _: usize) -> [f64; 2] {

@@ -3,12 +3,21 @@
 use super::print::{table, warn};
 use crate::problem::Outcome;
 
+/// Overlaps of bodies from this share of a cell on are said.
+const WORTH_NAMING: f64 = 0.2;
+
 /// Prints steps, dt, seconds per phase, DoF-updates per second, memory, energy, momentum and errors; a warning where a run
-/// that got to its end has made energy.
+/// that got to its end has made energy, or where bodies overlap.
 pub fn print(outcome: &Outcome, got_to_its_end: bool) {
     table(&outcome.rows());
     let watch = &outcome.report.watch;
     if watch.warned() && got_to_its_end {
         warn(format!("{}: do not trust these results; `energy_made` in summary.json", watch.made));
+    }
+    if let Some(overlap) = outcome.report.overlap.filter(|overlap| overlap.share > WORTH_NAMING) {
+        let ([x, y], percent) = (overlap.x, 100.0 * overlap.share);
+        warn(format!(
+            "bodies overlap by {percent:.0} % of a cell at ({x:.4}, {y:.4}), and from 100 % on they pass through each other: use smaller cells there"
+        ));
     }
 }

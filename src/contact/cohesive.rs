@@ -1,8 +1,7 @@
 //! A cohesive edge: a crack that takes energy to open.
 
-use super::{Interaction, Meeting, Pairs};
+use super::{Interaction, Meeting, Overlap, Pairs};
 use crate::riemann::tangent;
-use crate::tensor::dot;
 
 /// Bilinear law of traction and opening: with the opening w (normal part w_n, tangential part w_s), its size
 /// l = sqrt(max(0, w_n)^2 + w_s^2), the largest size so far k, l_0 = s/K at the strength s and l_f = 2 G/s where the edge is broken,
@@ -33,7 +32,7 @@ pub struct Cohesive {
     pub stiffness: f64,
 }
 
-/// Opening along the axes x and y, and k; m.
+/// Opening along the normal and the tangent of the edge, which turn with it and have the same signs from both sides, and k; m.
 pub(super) const VIRGIN: [f64; 3] = [0.0; 3];
 
 /// Rounds for the opening at the end of a step. Each makes the edge softer, towards the largest stiffness that agrees with its opening;
@@ -73,6 +72,11 @@ impl Cohesive {
         if largest <= self.ends()[0] { self.stiffness } else { self.envelope(largest) / largest }
     }
 
+    /// Whether sides of so much length are broken and have slid away from each other: they do not meet then.
+    fn has_slid(&self, across: f64, largest: f64, length: f64) -> bool {
+        self.secant(largest) == 0.0 && across.abs() > length
+    }
+
     /// (E(l_1) - E(l_0))/((l_1 - l_0)(l_0 + l_1)), Pa/m: half of the secant below the largest size so far.
     fn mean(&self, from: f64, to: f64, largest: f64) -> f64 {
         let secant = self.secant(largest);
@@ -93,10 +97,20 @@ impl Interaction for Cohesive {
         &VIRGIN
     }
 
+    fn stored(&self, _: &Overlap, length: f64, memory: &[f64]) -> f64 {
+        let [along, across, largest] = memory else { return 0.0 };
+        if self.has_slid(*across, *largest, length) {
+            return 0.0;
+        }
+        let axis = |stiffness: f64, opening: f64| 0.5 * stiffness * opening * opening;
+        let secant = self.secant(*largest);
+        axis(secant, along.max(0.0)) + axis(self.stiffness, along.min(0.0)) + axis(secant, *across)
+    }
+
     fn traction(&self, at: &Meeting, memory: &mut [f64]) -> [f64; 2] {
         let (n, s) = (at.normal, tangent(at.normal));
-        let [x, y, largest] = memory else { return [0.0; 2] };
-        let (stick, start) = (at.stick(), [dot([*x, *y], n), dot([*x, *y], s)]);
+        let [along, across, largest] = memory else { return [0.0; 2] };
+        let (stick, start) = (at.stick(), [*along, *across]);
         let before = size(start);
         // t = m (w_0 + w_1) on an axis, with w_1 = w_0 + dt y (t* - t).
         let pull = |k: usize, mean: f64| {
@@ -107,7 +121,8 @@ impl Interaction for Cohesive {
         let end = |k: usize, t: f64| start[k] + at.dt * stick[k].1 * (stick[k].0 - t);
         // Pressed sides are not damaged: they are those that undamaged ones would leave pressed.
         let whole = pull(0, 0.5 * self.stiffness);
-        let is_pressed = start[0] + end(0, whole) < 0.0;
+        let has_slid = self.has_slid(start[1], *largest, at.length);
+        let is_pressed = start[0] + end(0, whole) < 0.0 && !has_slid;
         let (mut mean, mut t) = (0.5 * self.secant(*largest), [0.0; 2]);
         let mut after = before;
         for _ in 0..ROUNDS {
@@ -120,8 +135,7 @@ impl Interaction for Cohesive {
             mean = softer;
         }
         *largest = largest.max(after);
-        let now = [end(0, t[0]), end(1, t[1])];
-        (*x, *y) = (now[0] * n[0] + now[1] * s[0], now[0] * n[1] + now[1] * s[1]);
+        (*along, *across) = (end(0, t[0]), end(1, t[1]));
         [0, 1].map(|i| t[0] * n[i] + t[1] * s[i])
     }
 }

@@ -25,6 +25,15 @@ pub struct Side {
     pub z: [f64; 2],
 }
 
+/// How far two sides overlap at a point.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Overlap {
+    /// max(0, -gap), m.
+    pub depth: f64,
+    /// Of the cells of both sides in a row: 1/(1/k_1 + 1/k_2) with k_i = rho0 c_p^2/h_e at F = 1, Pa/m.
+    pub stiffness: f64,
+}
+
 /// A point where two sides face each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Meeting {
@@ -34,6 +43,10 @@ pub struct Meeting {
     pub normal: [f64; 2],
     /// (x_2 - x_1).n at the start of the step, m: below 0 the sides overlap.
     pub gap: f64,
+    /// How far the sides overlap at the start of the step.
+    pub overlap: Overlap,
+    /// The length of the part that both faces share, m.
+    pub length: f64,
     /// dt of the whole step, s.
     pub step: f64,
     /// How long the interaction acts, s: dt for ADER, b_i dt for stage i of Runge-Kutta.
@@ -89,6 +102,18 @@ pub trait Interaction: Send + Sync {
     /// it must be the same with the sides exchanged.
     fn memory(&self) -> &[f64] {
         &[]
+    }
+
+    /// The pressure of a spring that pushes overlapping sides apart, Pa; not below 0. It acts beside [`Interaction::traction`], and the
+    /// velocities of the star state do not know of it: see [`Sliding`].
+    fn push(&self, _at: &Meeting) -> f64 {
+        0.0
+    }
+
+    /// The energy that the sides store and can give back, J/m^2: of the spring, and of an edge with `memory`, whose faces share so
+    /// much length, m.
+    fn stored(&self, _overlap: &Overlap, _length: f64, _memory: &[f64]) -> f64 {
+        0.0
     }
 
     /// The traction on the first side per current length, for [`Pairs::Initial`] per initial length, Pa.

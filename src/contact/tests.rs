@@ -11,8 +11,10 @@ fn side(v: [f64; 2], t: [f64; 2], z: [f64; 2]) -> Side {
 fn meeting() -> impl Strategy<Value = Meeting> {
     let pair = || [-1.0..1.0f64, -1.0..1.0];
     let one = move || (pair(), pair(), [0.1..10.0f64, 0.1..10.0]).prop_map(|(v, t, z)| side(v, t, z));
-    ([one(), one()], 0.0..std::f64::consts::TAU, -0.1..0.1f64, 0.01..1.0f64)
-        .prop_map(|(sides, angle, gap, dt)| Meeting { sides, normal: [angle.cos(), angle.sin()], gap, step: dt, dt })
+    ([one(), one()], 0.0..std::f64::consts::TAU, -0.1..0.1f64, 0.01..1.0f64).prop_map(|(sides, angle, gap, dt)| {
+        let overlap = Overlap { depth: (-gap).max(0.0), stiffness: 3.0 };
+        Meeting { sides, normal: [angle.cos(), angle.sin()], gap, overlap, length: 1.0, step: dt, dt }
+    })
 }
 
 /// v_1* and v_2* under the traction t on the first side.
@@ -39,7 +41,8 @@ proptest! {
     fn contact_pushes_and_never_makes_energy(at in meeting(), friction in 0.0..2.0f64) {
         let t = Sliding { friction }.traction(&at, &mut []);
         prop_assert!(dot(t, at.normal) <= 0.0);
-        prop_assert!(dot(t, tangent(at.normal)).abs() <= friction * dot(t, at.normal).abs() + 1e-15);
+        let pressure = Sliding { friction }.push(&at) - dot(t, at.normal);
+        prop_assert!(dot(t, tangent(at.normal)).abs() <= friction * pressure + 1e-15);
         let [one, two] = stars(&at, t);
         // The power of both sides, to rounding of products below 1000.
         prop_assert!(dot(t, one) - dot(t, two) <= 1e-12);
@@ -73,7 +76,7 @@ const EDGE: Cohesive = Cohesive { strength: 2.0, energy: 3.0, stiffness: 40.0 };
 fn heavy(rate: f64, dt: f64) -> Meeting {
     let z = [1e9; 2];
     let sides = [side([0.0; 2], [0.0; 2], z), side([rate, 0.0], [0.0; 2], z)];
-    Meeting { sides, normal: [1.0, 0.0], gap: 0.0, step: dt, dt }
+    Meeting { sides, normal: [1.0, 0.0], gap: 0.0, overlap: Overlap::default(), length: 1.0, step: dt, dt }
 }
 
 #[test]
@@ -122,4 +125,41 @@ fn a_stiff_edge_is_the_body_without_it_and_a_broken_one_is_pressed_as_if_whole()
     assert!((t[0] - n).abs() < 1e-9 && (t[1] - s).abs() < 1e-9, "{t:?}");
     let broken = EDGE.traction(&at, &mut [0.0, 0.0, 10.0]);
     assert!(broken[0] < 0.0 && broken[1] == 0.0, "{broken:?}");
+}
+
+#[test]
+fn broken_sides_that_have_slid_away_do_not_meet_and_an_edge_stores_the_same_from_both_sides() {
+    let at = Meeting {
+        sides: [side([1.0, 0.0], [-2.0, 0.0], [2.0, 1.0]), side([0.0; 2], [2.0, 0.0], [3.0, 1.5])],
+        ..heavy(0.0, 0.1)
+    };
+    for (slid, acts) in [(0.9, true), (1.1, false)] {
+        let t = EDGE.traction(&at, &mut [0.0, slid, 10.0]);
+        assert_eq!(t[0] < 0.0, acts, "{slid}: {t:?}");
+    }
+    // Seen from the other side normal and tangent have the other sign, and the opening too.
+    let [one, two] = &at.sides;
+    let back = |one: &Side| side(one.v, one.t, one.z);
+    let other = Meeting { sides: [back(two), back(one)], normal: [-1.0, 0.0], ..at };
+    let (mut here, mut there) = ([0.01, 0.02, 0.06], [0.01, 0.02, 0.06]);
+    let (t, back) = (EDGE.traction(&at, &mut here), EDGE.traction(&other, &mut there));
+    (0..2).for_each(|i| assert!((t[i] + back[i]).abs() < 1e-12, "{t:?} {back:?}"));
+    (0..3).for_each(|i| assert!((here[i] - there[i]).abs() < 1e-14, "{here:?} {there:?}"));
+    assert!((EDGE.stored(&at.overlap, 1.0, &here) - EDGE.stored(&at.overlap, 1.0, &there)).abs() < 1e-12);
+}
+
+proptest! {
+    #[test]
+    fn the_push_of_an_overlap_is_the_slope_of_what_it_stores_and_half_of_it_for_sides_that_part(
+        depth in 0.0..0.5f64,
+        stiffness in 0.1..10.0f64,
+    ) {
+        let (law, by) = (Sliding { friction: 0.0 }, 1e-6);
+        let at = |depth: f64| Overlap { depth, stiffness };
+        let stored = |depth: f64| law.stored(&at(depth), 1.0, &[]);
+        let slope = (stored(depth + by) - stored(depth)) / by;
+        let push = |rate: f64| law.push(&Meeting { overlap: at(depth + 0.5 * by), ..heavy(rate, 0.1) });
+        // A parabola: the slope is that in the middle.
+        prop_assert!((slope - push(-1.0)).abs() < 1e-6 && (0.5 * slope - push(1.0)).abs() < 1e-6);
+    }
 }

@@ -29,6 +29,8 @@ const DISSIPATED: &str = "material_dissipation";
 
 /// The last column, if the scene changes its grid: the energy that these changes have lost since the start of the run.
 const REGRIDS: &str = "regrid_dissipation";
+/// The next column of a run whose faces act on each other.
+const CONTACT: &str = "contact_work";
 /// The next column of a run with corrections.
 const CORRECTIONS: &str = "correction_dissipation";
 /// The last columns of a run with corrections or a rescue: how many cells a correction changed in the last step, and how often cells
@@ -57,6 +59,8 @@ pub struct Contents {
     pub balance: bool,
     /// With the balance: the energy that changes of grid have lost.
     pub regrids: bool,
+    /// With the balance: the work between faces that act on each other.
+    pub contact: bool,
     /// The cells that corrections and the rescue treat; with the balance, the energy that they have taken.
     pub corrections: bool,
 }
@@ -74,12 +78,13 @@ impl Ledger {
     /// # Errors
     /// The file cannot be created.
     pub fn create(path: &Path, schedule: Schedule, contents: Contents) -> Result<Self, Error> {
-        let Contents { drift, dissipated, balance, regrids, corrections } = contents;
+        let Contents { drift, dissipated, balance, regrids, contact, corrections } = contents;
         let mut columns = COLUMNS.to_vec();
         columns.extend(drift.then_some(DRIFT));
         columns.extend(dissipated.then_some(DISSIPATED));
         columns.extend(BALANCE.iter().filter(|_| balance));
         columns.extend((balance && regrids).then_some(REGRIDS));
+        columns.extend((balance && contact).then_some(CONTACT));
         columns.extend((balance && corrections).then_some(CORRECTIONS));
         columns.extend(TREATED.iter().filter(|_| corrections));
         Ok(Self { schedule, contents, table: Table::create(path, &columns)? })
@@ -137,6 +142,7 @@ impl Observer for Ledger {
         if let Some(balance) = view.balance.filter(|_| self.contents.balance) {
             row.extend(columns(balance, &totals));
             row.extend(self.contents.regrids.then_some(balance.regrid_dissipation));
+            row.extend(self.contents.contact.then_some(balance.contact_work));
             row.extend(self.contents.corrections.then_some(balance.correction_dissipation));
         }
         if self.contents.corrections {

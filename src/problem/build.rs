@@ -2,6 +2,7 @@
 
 use crate::boundary;
 use crate::cloud::Cloud;
+use crate::contact::Pairs;
 use crate::error::{Error, Result};
 use crate::exact::ExactForce;
 use crate::expression::Expression;
@@ -130,6 +131,14 @@ impl Scene {
     pub fn build_scheme(&self, mesh: &Mesh, operators: Operators, kernel: Kernel) -> Result<Scheme> {
         let boundaries = mesh.edge_groups.iter().map(|group| self.condition(group)).collect::<Result<_>>()?;
         let pairings = self.pairings(mesh);
+        if !pairings.is_empty() && self.scheme.degree == 0 {
+            let what = "faces do not act on each other at degree 0: constants have no displacement";
+            return Err(self.error(
+                "scheme.degree",
+                what,
+                "give degree 1 or more, or other conditions than contact and cohesive",
+            ));
+        }
         let rate = self.curl.values.number("alpha") * self.scheme.degree as f64;
         let curl = self.curl.build().relax.map(|relax| Control { relax, rate });
         let mut sources: Vec<_> = self.sources.iter().map(|s| self.source(s)).collect();
@@ -138,13 +147,26 @@ impl Scene {
             sources.push(Arc::new(ExactForce(exact)));
         }
         let (laws, flux) = (self.laws(), (self.scheme.flux.build().make)());
-        let scheme = Scheme::new(operators, laws, self.integration(), flux, boundaries)?.with_pairings(&pairings)?;
+        let scheme = Scheme::new(operators, laws, self.integration(), flux, boundaries)?;
+        let scheme = scheme.with_pairings(&pairings).map_err(|why| self.at_cut(why))?;
         let scheme = scheme.with_sources(sources).with_corrections(self.limiters()).with_kernel(kernel);
         let scheme = scheme.with_rescue(self.limiter.values.boolean("rescue").then(Rescue::default));
         // Constants have no curl.
         match curl.filter(|_| self.scheme.degree > 0) {
             Some(control) => scheme.with_curl(control),
             None => Ok(scheme),
+        }
+    }
+
+    /// An error of the pairs of a cut, at its condition.
+    fn at_cut(&self, why: Error) -> Error {
+        let of_cut = |boundary: &Boundary| {
+            let interaction = boundary.condition.build().interaction.map(|make| make(&boundary.condition.values));
+            interaction.is_some_and(|interaction| interaction.pairs() == Pairs::Initial)
+        };
+        match (why, self.boundaries.iter().position(of_cut)) {
+            (Error::Input { what, remedy, .. }, Some(k)) => self.error(&format!("boundary.{k}.group"), what, remedy),
+            (why, _) => why,
         }
     }
 

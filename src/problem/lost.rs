@@ -136,7 +136,7 @@ impl Case<'_> {
         let first = self.report.first?.accounted();
         let now = self.problem.scheme.totals(&self.problem.state).accounted();
         let work = match &self.report.balance {
-            Some(balance) => balance.boundary_work + balance.source_work,
+            Some(balance) => balance.work(),
             None if self.is_driven() => return None,
             None => 0.0,
         };

@@ -197,6 +197,7 @@ impl<'a> Setup<'a> {
         built::refuse(&[
             (built::SOURCES, !scheme.sources.is_empty(), "a source"),
             (built::CORRECTIONS, !scheme.corrections.is_empty() || scheme.rescue.is_some(), "a limiter or the rescue"),
+            (built::CONTACT, scheme.has_contacts(), "contact"),
             (built::CURL, scheme.curl.is_some(), "the control of the curl"),
         ])?;
         Ok((scheme, origin))

@@ -7,7 +7,7 @@ use crate::mesh::{BoundaryEdge, Link, Mesh};
 use crate::operators::{Blocks, Neighbour};
 use crate::scene::{Scene, When};
 use crate::state::State;
-use crate::step::{Scheme, Survey, cfl};
+use crate::step::{Overlap, Scheme, Survey, cfl};
 use std::collections::HashMap;
 
 /// Parts that a list names before it only counts.
@@ -25,6 +25,9 @@ pub fn of_mesh(mesh: &Mesh, links: &[[Link; 4]]) -> Vec<String> {
     all
 }
 
+/// An overlap at the start from this share of a cell on is said: less is the rounding of a mesh file.
+const STARTS_APART: f64 = 1e-6;
+
 /// The notices before a run: those of its mesh, whose periodic boundaries connect, and of its start and first step, s.
 pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     let Problem { scene, body, scheme, state, .. } = problem;
@@ -36,6 +39,7 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     // Along groups with a condition the mesh has been cut.
     all.extend(partly_inside(mesh, &mesh.edge_counts(), "these have no [[boundary]] and are free"));
     all.extend(cuts(scene, mesh));
+    all.extend(overlap(scheme, state));
     all.extend(large(mesh));
     all.extend(fast_start(mesh, scheme, state, survey));
     all.extend(fast_boundary(scene, mesh, scheme));
@@ -73,6 +77,15 @@ fn meeting(scheme: &Scheme) -> HashMap<usize, Vec<usize>> {
         }
     }
     all
+}
+
+/// A word on bodies that overlap at the start.
+fn overlap(scheme: &Scheme, state: &State) -> Option<String> {
+    let Overlap { depth, share, x: [x, y] } = scheme.overlap(state).filter(|overlap| overlap.share > STARTS_APART)?;
+    Some(format!(
+        "bodies in contact overlap by {depth:.3e} m at the start, {:.0} % of a cell, at ({x:.4}, {y:.4}): they will be pushed apart",
+        100.0 * share
+    ))
 }
 
 /// A word on each group with a condition along which the body is cut.

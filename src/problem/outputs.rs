@@ -50,9 +50,8 @@ impl Scene {
     /// Whether a condition acts on the groups that an output looks at: the faces of periodic groups are inner faces.
     fn check_joined(&self, output: usize, groups: &[String]) -> Result<()> {
         let is_joined = |name: &String| {
-            let joined =
-                self.boundaries.iter().filter_map(|own| own.partner().map(|(_, partner)| [&own.group[..], partner]));
-            joined.flatten().any(|group| group == name)
+            let joined = self.boundaries.iter().filter(|boundary| boundary.is_joined());
+            joined.flat_map(Boundary::groups).any(|group| group == name)
         };
         let Some(k) = groups.iter().position(is_joined) else { return Ok(()) };
         let what = format!("\"{}\" is periodic: no condition acts there", groups[k]);
@@ -78,6 +77,7 @@ impl Problem {
             drift: state.has_displacement(),
             dissipated: !scheme.histories.is_empty(),
             regrids: !scene.regrids.is_empty(),
+            contact: scheme.has_contacts(),
             corrections: !scheme.corrections.is_empty() || scheme.rescue.is_some(),
             balance: false,
         };

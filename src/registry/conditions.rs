@@ -103,6 +103,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
         check: ANY,
         build: Condition::of(|of| Arc::new(Wall { speed: speed(of) })),
     },
+    #[cfg(feature = "effect-conditions")]
     Entry {
         name: "unilateral",
         about: "rigid wall that the body may leave and reach, with gap and friction; `speed` moves it along the outward normal",
@@ -113,6 +114,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
             Arc::new(Unilateral { gap, speed: speed(of), friction })
         }),
     },
+    #[cfg(feature = "effect-conditions")]
     Entry {
         name: "half-plane",
         about: "rigid half-plane in the way of the group, in the current configuration, with friction; it may move",
@@ -132,6 +134,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
             obstacle(of, Shape::HalfPlane { point, normal: n.map(|n| n / length) })
         }),
     },
+    #[cfg(feature = "effect-conditions")]
     Entry {
         name: "disc",
         about: "rigid disc in the way of the group, in the current configuration, with friction; it may move",
@@ -146,6 +149,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
             obstacle(of, Shape::Disc { centre: of.vector("centre"), radius: of.number("radius") })
         }),
     },
+    #[cfg(feature = "effect-conditions")]
     Entry {
         name: "polygon",
         about: "rigid polygon in the way of the group, in the current configuration, with friction; it may move",
@@ -168,6 +172,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
         build: Condition::of(|_| Arc::new(Wall { speed: None })),
     },
     Entry { name: "free", about: "no traction", parameters: &[], check: ANY, build: Condition::of(|_| Arc::new(Free)) },
+    #[cfg(feature = "effect-conditions")]
     Entry {
         name: "clamped",
         about: "no velocity",
@@ -191,6 +196,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
         check: ANY,
         build: Condition::of(|of| Arc::new(Velocity { value: of.loads("value", "file") })),
     },
+    #[cfg(feature = "effect-conditions")]
     Entry {
         name: "traction",
         about: "prescribed traction P N, per area of the initial configuration",
@@ -201,6 +207,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
         check: ANY,
         build: Condition::of(|of| Arc::new(Traction { value: of.loads("value", "file") })),
     },
+    #[cfg(feature = "effect-conditions")]
     Entry {
         name: "pressure",
         about: "pressure along the current normal: P N = -p cof(F) N",
@@ -214,6 +221,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
             Arc::new(Pressure { value })
         }),
     },
+    #[cfg(feature = "effect-conditions")]
     Entry {
         name: "foundation",
         about: "springs and dampers along the initial normal and tangent: P N = -k u - c v",
@@ -238,6 +246,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
             Arc::new(Foundation { stiffness: of.vector("stiffness"), damping })
         }),
     },
+    #[cfg(feature = "effect-conditions")]
     Entry {
         name: "absorbing",
         about: "nothing comes in, and plane waves go out",
@@ -258,6 +267,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
         // The faces are inner faces: nothing asks for their condition.
         build: Condition { partner: Some("partner"), ..Condition::of(|_| Arc::new(Free)) },
     },
+    #[cfg(feature = "effect-contact")]
     Entry {
         name: "contact",
         about: "contact with the faces of another group, or of its own: they press on each other where they touch, and part freely",
@@ -280,6 +290,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
         check: ANY,
         build: Condition::between(|of| Arc::new(Paired(sliding(of))), sliding, Some("partner")),
     },
+    #[cfg(feature = "effect-contact")]
     Entry {
         name: "cohesive",
         about: "a cut inside of the body that takes energy to open: a bilinear law of traction and opening",

@@ -40,6 +40,7 @@ pub static LAWS: Table<Build> = Table::new(&[
         check: ANY,
         build: |of| Law::new(StVenantKirchhoff::new(of.number("young"), of.number("poisson"), of.number("density"))),
     },
+    #[cfg(feature = "effect-memory")]
     Entry {
         name: "j2",
         about: J2::ABOUT,

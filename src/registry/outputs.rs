@@ -159,6 +159,7 @@ pub static OUTPUTS: Table<Output> = Table::new(&[
             })
         },
     },
+    #[cfg(feature = "effect-outputs")]
     Entry {
         name: "probe",
         about: "a point of the material through time, its place x = X + u and fields: `tracks/<name>.csv`; what a line of one sample would be",
@@ -179,6 +180,7 @@ pub static OUTPUTS: Table<Output> = Table::new(&[
             })
         },
     },
+    #[cfg(feature = "effect-outputs")]
     Entry {
         name: "force",
         about: "force, impulse and work of the conditions of boundary groups on the body through time, per metre of thickness: `tracks/<name>.csv`",
@@ -202,6 +204,7 @@ pub static OUTPUTS: Table<Output> = Table::new(&[
             })
         },
     },
+    #[cfg(feature = "effect-outputs")]
     Entry {
         name: "extreme",
         about: "the smallest and the largest value of a field through time, and the points X of both: `tracks/<name>.csv`",
@@ -216,6 +219,7 @@ pub static OUTPUTS: Table<Output> = Table::new(&[
             })
         },
     },
+    #[cfg(feature = "effect-outputs")]
     Entry {
         name: "length",
         about: "the distance of two points of the material, or how far a group or the body reaches along an axis, through time: `tracks/<name>.csv`",
@@ -248,6 +252,7 @@ pub static OUTPUTS: Table<Output> = Table::new(&[
             })
         },
     },
+    #[cfg(feature = "effect-outputs")]
     Entry {
         name: "energy",
         about: "kinetic, strain and dissipated energy of each material through time, per metre of thickness: `tracks/<name>.csv`",

@@ -1,7 +1,8 @@
 //! The forces on the volume, `[[source]] kind = ..`.
 
 use super::{ANY, Entry, FINITE, Fault, Form, POSITIVE, Parameter, Table, Values};
-use crate::source::{BodyForce, Damping, PressurePulse, Source};
+use crate::expression::Expression;
+use crate::source::{BodyForce, Damping, PressurePulse, Source, Varies};
 use std::sync::Arc;
 
 /// Makes a source from its parameters, in the cells of the law of a number, or everywhere.
@@ -25,6 +26,17 @@ const PULSE: &[Parameter] = &[
     Parameter::number("start", "when it begins", "s", FINITE, 0.0),
 ];
 
+/// A force by two expressions, which know what they vary with.
+fn body_force(of: &Values, material: Option<usize>) -> Arc<dyn Source> {
+    let all = of.expressions("value");
+    let varies = Varies {
+        place: all.iter().any(Expression::depends_on_place),
+        time: all.iter().any(Expression::depends_on_time),
+        velocity: false,
+    };
+    Arc::new(BodyForce { value: of.pair("value"), varies, material })
+}
+
 /// Every source.
 pub static SOURCES: Table<Build> = Table::new(&[
     Entry {
@@ -32,7 +44,7 @@ pub static SOURCES: Table<Build> = Table::new(&[
         about: "force per unit mass, which may depend on place and time",
         parameters: &[VALUE],
         check: ANY,
-        build: |of, material| Arc::new(BodyForce { value: of.pair("value"), material }),
+        build: body_force,
     },
     Entry {
         name: "gravity",
@@ -46,7 +58,7 @@ pub static SOURCES: Table<Build> = Table::new(&[
                 "gravity is constant; kind = \"body-force\" takes expressions",
             )),
         },
-        build: |of, material| Arc::new(BodyForce { value: of.pair("value"), material }),
+        build: body_force,
     },
     Entry {
         name: "damping",

@@ -205,6 +205,9 @@ impl Values {
 
 /// An expression as data of a boundary or a source.
 pub fn data(expression: &Expression) -> Data {
+    if let Some(constant) = expression.constant() {
+        return Arc::new(move |_, _| constant);
+    }
     let expression = expression.clone();
     Arc::new(move |x, t| expression.eval(x, t))
 }

@@ -4,7 +4,7 @@ use super::watch::{Alarm, Limits, Watch};
 use super::{Kept, Treated};
 use crate::state::{State, UNKNOWNS};
 use crate::step::phase::{NAMES, Phases};
-use crate::step::{Balance, Held, Motion, Scheme, Survey, Totals};
+use crate::step::{Balance, Held, Motion, Overlap, Scheme, Survey, Totals};
 use cpu_time::ProcessTime;
 use serde_json::{Map, Value, json};
 use std::time::Instant;
@@ -36,6 +36,8 @@ pub struct Report {
     pub watch: Watch,
     /// The cells that a limiter and the rescue have changed; none where the scheme has neither.
     pub treated: Option<Treated>,
+    /// The deepest overlap of bodies; none where no condition pairs any.
+    pub overlap: Option<Overlap>,
     /// The smallest J that was seen in a state of the run, at its points, grid nodes and face points.
     pub min_j: f64,
     /// Bytes of operators, state and work.
@@ -66,6 +68,7 @@ impl Default for Report {
             balance: None,
             watch: Watch::default(),
             treated: None,
+            overlap: None,
             min_j: f64::INFINITY,
             bytes: 0,
             wall: 0.0,
@@ -110,6 +113,9 @@ impl Report {
         }
         if let Some(treated) = &mut self.treated {
             treated.count(work.counts(), scheme.operators.blocks.slot.len());
+        }
+        if let Some(overlap) = work.overlap() {
+            self.overlap = Some(self.overlap.unwrap_or_default().or(overlap));
         }
         self.watch.step(scheme, state, work, self.balance.as_ref())
     }
@@ -181,7 +187,7 @@ impl Report {
             ("strain_energy", json!(last.strain)),
             ("total_energy_ratio", json!(self.energy_ratio())),
             ("momentum", json!(last.momentum)),
-            ("work", json!({ "boundary": self.watch.work[0], "sources": self.watch.work[1] })),
+            ("work", self.work_json()),
             ("energy_made", made_json(&self.watch)),
             ("min_j", json!(self.min_j)),
             ("max_curl_f", json!(last.max_curl)),
@@ -198,11 +204,26 @@ impl Report {
         if let Some(treated) = &self.treated {
             pairs.push(("treated_cells", treated.json()));
         }
+        if let Some(Overlap { depth, share, x }) = self.overlap {
+            pairs.push(("contact_overlap", json!({ "depth": depth, "share_of_cell": share, "place": x })));
+        }
         let first = self.first.and_then(|first| first.angular_momentum);
         if let Some((first, last)) = first.zip(last.angular_momentum) {
             pairs.push(("angular_momentum", json!([first, last])));
         }
         pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+    }
+}
+
+impl Report {
+    /// Work of the outside; where faces act on each other, theirs as well.
+    fn work_json(&self) -> Value {
+        let [boundary, sources] = self.watch.work;
+        let mut work = json!({ "boundary": boundary, "sources": sources });
+        if self.overlap.is_some() {
+            work["contact"] = json!(self.watch.contact_work);
+        }
+        work
     }
 }
 
@@ -219,6 +240,7 @@ fn balance_json(balance: &Balance, energy: f64) -> Value {
     json!({
         "boundary_work": balance.boundary_work,
         "source_work": balance.source_work,
+        "contact_work": balance.contact_work,
         "flux_dissipation": balance.flux_dissipation,
         "boundary_dissipation": balance.boundary_dissipation,
         "curl_dissipation": balance.curl_dissipation,

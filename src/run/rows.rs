@@ -2,7 +2,7 @@
 
 use super::Report;
 use crate::format::{Row, mebibytes, row, seconds};
-use crate::step::{Balance, Totals, phase::NAMES};
+use crate::step::{Balance, Overlap, Totals, phase::NAMES};
 
 impl Report {
     /// What the run cost, and what became of energy and momentum.
@@ -43,7 +43,11 @@ impl Report {
         }
         match &self.balance {
             Some(balance) => rows.extend(balance_rows(balance)),
-            None => rows.extend(work_rows(self.watch.work)),
+            None => rows.extend(work_rows([self.watch.work[0], self.watch.work[1], self.watch.contact_work])),
+        }
+        if let Some(Overlap { depth, share, x: [x, y] }) = self.overlap {
+            let at = if share > 0.0 { format!(", at ({x:.4}, {y:.4})") } else { String::new() };
+            rows.push(row("deepest overlap", format!("{depth:.3e} m, {:.1} % of a cell{at}", 100.0 * share)));
         }
         rows.extend(self.treated.iter().flat_map(|treated| treated.rows()));
         let made = self.watch.made;
@@ -55,9 +59,9 @@ impl Report {
     }
 }
 
-/// What came from outside; what a run did not have is left out.
-fn work_rows([boundary, sources]: [f64; 2]) -> Vec<Row> {
-    let parts = [("work of the boundary", boundary), ("work of sources", sources)];
+/// What came from outside and from contact; what a run did not have is left out.
+fn work_rows([boundary, sources, contact]: [f64; 3]) -> Vec<Row> {
+    let parts = [("work of the boundary", boundary), ("work of sources", sources), ("work of contact", contact)];
     let there = parts.into_iter().filter(|(_, joule)| *joule != 0.0);
     there.map(|(name, joule)| row(format!("  {name}"), format!("{joule:.6e} J/m"))).collect()
 }
@@ -73,5 +77,5 @@ fn balance_rows(balance: &Balance) -> Vec<Row> {
     ];
     let there = parts.into_iter().filter(|(_, joule)| *joule != 0.0);
     let lost = there.map(|(name, joule)| row(format!("  {name}"), format!("{joule:.6e} J/m")));
-    work_rows([balance.boundary_work, balance.source_work]).into_iter().chain(lost).collect()
+    work_rows([balance.boundary_work, balance.source_work, balance.contact_work]).into_iter().chain(lost).collect()
 }

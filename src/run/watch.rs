@@ -1,6 +1,7 @@
 //! The watch over the energy: no body ever makes any, so a rise is an error of the method, and is said while it runs.
 //!
-//! A(t) = kinetic + strain energy + what laws have dissipated - work done by the outside never rises. Its rise above
+//! A(t) = kinetic + strain energy + what laws have dissipated + what contact and cohesive edges store - work done by the outside never
+//! rises. Its rise above
 //! the lowest value so far is energy made out of nothing. It is measured against the largest of the energy at the start, the
 //! work done so far, and [`ROUNDING`] int rho0 c_p^2 dX: what is below is noise of the energy's own rounding.
 
@@ -51,6 +52,10 @@ pub struct Watch {
     limits: Option<Limits>,
     /// Work of the boundary and of sources so far, J/m.
     pub work: [f64; 2],
+    /// Work between faces of the body so far, J/m: of contact, friction and cohesive edges. It is no work of the outside.
+    pub contact_work: f64,
+    /// What contact and cohesive edges store, J/m, as the watch has seen it last.
+    stored: f64,
     /// What regrids added, which is not the step's.
     regrids: f64,
     /// See [`self`].
@@ -96,9 +101,16 @@ impl Watch {
     }
 
     /// Books the last step, which led to `state`, and looks at the energy where that is due.
-    pub fn step(&mut self, scheme: &Scheme, state: &State, work: &Work, balance: Option<&Balance>) -> Option<Alarm> {
-        let [boundary, sources] = work.external_work();
+    pub fn step(
+        &mut self,
+        scheme: &Scheme,
+        state: &State,
+        work: &mut Work,
+        balance: Option<&Balance>,
+    ) -> Option<Alarm> {
+        let [boundary, sources, between] = work.external_work(scheme);
         self.work = [self.work[0] + boundary, self.work[1] + sources];
+        self.contact_work += between;
         self.scale = self.scale.max(self.work[0] + self.work[1]);
         let limits = self.limits?;
         self.steps += 1;
@@ -109,6 +121,7 @@ impl Watch {
             Some(balance) => balance.energy,
             None => scheme.energy(state, work, &mut self.cells),
         };
+        self.stored = work.stored_in_contact(scheme, state);
         self.look(energy, state, limits)
     }
 
@@ -120,7 +133,7 @@ impl Watch {
     }
 
     fn look(&mut self, energy: f64, state: &State, limits: Limits) -> Option<Alarm> {
-        let own = energy - self.work[0] - self.work[1] - self.regrids;
+        let own = energy + self.stored - self.work[0] - self.work[1] - self.regrids;
         self.lowest = self.lowest.min(own);
         let joule = own - self.lowest;
         let made = EnergyMade { joule, share: joule / self.scale, time: state.time, step: state.step };

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::expression::Expression;
 use crate::registry::{
     CONDITIONS, CONTROLS, Chosen, Entry, FLUXES, LAWS, LIMITERS, METHODS, Parameter, SOLUTIONS, SOURCES, Sweeps, Table,
-    controls, defaults, fluxes, laws, limiters,
+    Value, controls, defaults, fluxes, laws, limiters,
 };
 use std::path::PathBuf;
 use toml_edit::Document;
@@ -240,7 +240,8 @@ fn boundaries(tables: Vec<Reader>, degree: usize) -> Result<Vec<Boundary>> {
         }
         if let Some(other) = boundaries.iter().find(|other| disagree(other, &boundary)) {
             let what = format!("the conditions of \"{}\" and \"{}\" do not agree", other.group, boundary.group);
-            let remedy = "a group has one `partner`, which is periodic to it or has no [[boundary]] of its own";
+            let remedy = "groups that are periodic have one `partner` each; the partner of a group in contact has no [[boundary]] of its own, or one \
+                          that is contact as well, and with the same `friction` where both name each other";
             return Err(table.wrong("group", what, remedy));
         }
         boundaries.push(boundary);
@@ -248,11 +249,26 @@ fn boundaries(tables: Vec<Reader>, degree: usize) -> Result<Vec<Boundary>> {
     Ok(boundaries)
 }
 
-/// Whether one names the other or a third as its partner, and is not named back.
+/// Whether a pair of conditions cannot both hold.
 fn disagree(a: &Boundary, b: &Boundary) -> bool {
     let (of_a, of_b) = (a.partner().map(|(_, group)| group), b.partner().map(|(_, group)| group));
     let (to_b, to_a) = (of_a == Some(&b.group), of_b == Some(&a.group));
-    to_a != to_b || (of_a.is_some() && of_a == of_b)
+    if a.is_joined() || b.is_joined() {
+        // One names the other and is not named back, or both name a third.
+        return to_a != to_b || (of_a.is_some() && of_a == of_b);
+    }
+    // A body may touch several others. Whom one names must be in contact too, and in the same contact where it names it back.
+    (to_a || to_b) && (a.condition.name() != b.condition.name() || (to_a && to_b && !act_alike(a, b)))
+}
+
+/// Whether two conditions that name each other are the same.
+fn act_alike(a: &Boundary, b: &Boundary) -> bool {
+    let but_partner = |one: &Boundary| {
+        let mut values = one.condition.values.clone();
+        one.partner().into_iter().for_each(|(key, _)| values.set(key, Value::Text(String::new())));
+        values
+    };
+    but_partner(a) == but_partner(b)
 }
 
 fn boundary(table: &mut Reader, degree: usize) -> Result<Boundary> {

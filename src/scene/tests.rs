@@ -309,6 +309,15 @@ fn partners_that_do_not_agree_are_refused() {
         (with_sides(left, "kind = \"periodic\"\npartner = \"top\"", symmetry), agree),
         (with_sides(left, "kind = \"periodic\"\npartner = \"left\"", left), agree),
         (with_sides("kind = \"periodic\"\npartner = \"left\"", "kind = \"free\"", symmetry), "its own `partner`"),
+        (with_sides("kind = \"contact\"\npartner = \"right\"", "kind = \"free\"", symmetry), agree),
+        (
+            with_sides(
+                "kind = \"contact\"\npartner = \"right\"",
+                "kind = \"contact\"\npartner = \"left\"\nfriction = 0.1",
+                symmetry,
+            ),
+            agree,
+        ),
         (with_sides("kind = \"periodic\"", "kind = \"free\"", symmetry), "needs the key `partner`"),
         (with_sides("kind = \"periodic\"\npartner = \"rigt\"", "kind = \"free\"", symmetry), "did you mean `right`"),
     ] {

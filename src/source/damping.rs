@@ -1,6 +1,6 @@
 //! Damping in proportion to mass.
 
-use super::Source;
+use super::{Source, Varies};
 use crate::boundary::Data;
 
 /// b = -alpha s(X) v, with the share s cut to 0..1. The velocity of a body that nothing else acts on falls as exp(-alpha t).
@@ -15,8 +15,8 @@ pub struct Damping {
 }
 
 impl Source for Damping {
-    fn depends_on_velocity(&self) -> bool {
-        true
+    fn varies(&self) -> Varies {
+        if self.share.is_some() { Varies { velocity: true, ..Varies::PLACE_AND_TIME } } else { Varies::VELOCITY }
     }
 
     fn acceleration(&self, x: [f64; 2], time: f64, v: [f64; 2], material: usize) -> [f64; 2] {

@@ -10,7 +10,7 @@ fn damping_acts_against_the_velocity_in_its_law_and_by_its_share() {
     let at = |x: f64| layer.acceleration([x, 0.0], 0.0, [1.0, 0.0], 0)[0];
     // The share is cut to 0..1.
     assert_eq!([-1.0, 0.0, 0.25, 1.0, 2.0].map(at), [0.0, 0.0, -1.0, -4.0, -4.0]);
-    assert!(layer.depends_on_velocity());
+    assert_eq!((all.varies(), layer.varies()), (Varies::VELOCITY, Varies { place: true, time: true, velocity: true }));
 }
 
 const PULSE: PressurePulse = PressurePulse {

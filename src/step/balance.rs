@@ -47,6 +47,9 @@ pub struct Balance {
     pub boundary_work: f64,
     /// int rho0 b.v over body and time.
     pub source_work: f64,
+    /// The same over faces that act on each other: what contact, friction and cohesive edges give to the body, below 0 but for what they
+    /// had stored.
+    pub contact_work: f64,
     /// The share that faces between cells have in the loss of the steps.
     pub flux_dissipation: f64,
     /// The share of the boundary.
@@ -73,9 +76,9 @@ impl Balance {
         self.energy += after - before;
     }
 
-    /// What came from outside.
+    /// What came from outside and from between the faces of the body.
     pub fn work(&self) -> f64 {
-        self.boundary_work + self.source_work
+        self.boundary_work + self.source_work + self.contact_work
     }
 
     /// All that was lost by a known cause.
@@ -181,14 +184,15 @@ impl Work {
                 energy += block.energy.0[lane];
             }
         }
-        let [by_boundary, by_sources] = self.external_work();
+        let [by_boundary, by_sources, between] = self.external_work(scheme);
+        balance.contact_work += between;
         balance.boundary_work += by_boundary;
         balance.source_work += by_sources;
         balance.jumps += flux + boundary;
         let [before, after] = self.corrections.as_ref().map_or([0.0; 2], |memory| memory.loss);
         balance.correction_dissipation += before + after;
         balance.curl_dissipation += corrected - (energy + after);
-        let lost = balance.energy - before + (by_boundary + by_sources) - corrected;
+        let lost = balance.energy - before + (by_boundary + by_sources + between) - corrected;
         let all = flux.abs() + boundary.abs();
         let at_boundary = if all > 0.0 { lost * (boundary.abs() / all) } else { 0.0 };
         balance.boundary_dissipation += at_boundary;

@@ -229,7 +229,7 @@ impl<C: Coefficient> LawWork for Predict<'_, C> {
         let Self { block, matrices, metric, internal, arrays } = self;
         let Method::Ader { time, sweeps } = &block.scheme.method else { return };
         let (weights, dt, kernel) = (&time.weights[..], block.stage.dt, block.scheme.kernel);
-        let moving = built::SOURCES && block.scheme.sources.iter().any(|source| source.depends_on_velocity());
+        let moving = built::SOURCES && block.scheme.sources.iter().any(|source| source.varies().velocity);
         let renew = |sweep: &Sweep, arrays: &mut predictor::Arrays| {
             if let Some(points) = block.points() {
                 let start = ticks();

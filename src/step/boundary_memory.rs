@@ -56,6 +56,14 @@ impl BoundaryMemory {
         between(&self.first, block)
     }
 
+    /// Those of a point among all.
+    pub fn look<'a>(&self, numbers: &'a [f64], [block, face, lane, point]: [usize; 4]) -> &'a [f64] {
+        let Some(faces) = self.faces.get(block) else { return &[] };
+        let (first, count) = faces[face][lane];
+        let first = self.first[block] + (first + count * point as u32) as usize;
+        numbers.get(first..first + count as usize).unwrap_or_default()
+    }
+
     /// Those of a point among the numbers of its block.
     #[inline]
     pub fn of_point<'a>(&self, numbers: &'a mut [f64], [block, face, lane, point]: [usize; 4]) -> &'a mut [f64] {

@@ -252,7 +252,7 @@ impl Block<'_> {
         let (lift, held) = (&mut nodes.lift[..], &mut nodes.held[..]);
         flux.faces(scheme.kernel, Faces { metered, own, other: &other, metric, points: m, span, medium, lift, held });
         for face in 0..FACES {
-            let met = meetings.map(|meetings| Met { meetings, traces });
+            let met = meetings.filter(|_| built::CONTACT).map(|meetings| Met { meetings, traces });
             let sides = Sides { face, own: &own[face * length..][..length], other: &other[face], met };
             if plan[face].has_boundary_or_interface {
                 let held = &mut nodes.held[2 * m * face..2 * m * (face + 1)];

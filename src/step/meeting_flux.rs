@@ -20,8 +20,8 @@ pub(super) struct Met<'a> {
 }
 
 impl Block<'_> {
-    /// The flux at a point of a face that meets others: with the traction t that they leave there, t* = t, v* = v + Z^-1 (t - T). None
-    /// where it meets nothing.
+    /// The flux at a point of a face that meets others: with the traction t that they leave there and the push q of overlaps, t* = t + q,
+    /// v* = v + Z^-1 (t - T). None where it meets nothing.
     pub(super) fn flux_of_meeting(
         &self,
         met: Met,
@@ -37,7 +37,7 @@ impl Block<'_> {
         }
         let line = &self.scheme.operators.line;
         let memory = self.scheme.boundary_memory.of_point(memory, [self.number, face, lane, point]);
-        let mut force = [0.0; 2];
+        let (mut force, mut push) = ([0.0; 2], [0.0; 2]);
         for &(segment, side) in met_by {
             let segment = &met.meetings.segments[segment];
             let law = contacts.law(segment.pairing);
@@ -49,20 +49,24 @@ impl Block<'_> {
                 }
                 let sides = [0, 1].map(|k| self.side(segment, at, k, met.traces, own.len()));
                 let (gap, step, dt) = (at.gap, self.stage.dt, self.factor());
-                let meeting = Meeting { sides, normal: segment.normal, gap, step, dt };
-                let t = law.traction(&meeting, memory);
-                let sign = if side == 0 { 1.0 } else { -1.0 };
-                (0..2).for_each(|i| force[i] += sign * at.weight * share * t[i]);
+                let (normal, overlap, length) = (segment.normal, segment.overlap(at), segment.length);
+                let meeting = Meeting { sides, normal, gap, overlap, length, step, dt };
+                let (t, pressure) = (law.traction(&meeting, memory), law.push(&meeting));
+                let weight = if side == 0 { at.weight * share } else { -at.weight * share };
+                (0..2).for_each(|i| force[i] += weight * t[i]);
+                (0..2).for_each(|i| push[i] -= weight * pressure * normal[i]);
             }
         }
         let at = self.face_point(face, point, lane);
         let length = self.metric().lane(lane).length(face);
-        let t = force.map(|force| force / (line.basis.weights[point] * length));
+        let per_length = |force: f64| force / (line.basis.weights[point] * length);
+        let (t, push) = (force.map(per_length), push.map(per_length));
         let x = |k: usize| own[k].0[lane];
         let f = [x(0), x(1), x(2), x(3)];
         let inside = Trace { f, v: [x(4), x(5)], t: [x(6), x(7)], c: self.law().speeds(f, at.normal) };
         let dv = at.characteristic(&inside).solve([t[0] - inside.t[0], t[1] - inside.t[1]]);
-        Some(star([inside.v[0] + dv[0], inside.v[1] + dv[1]], t, at.normal))
+        let v = [inside.v[0] + dv[0], inside.v[1] + dv[1]];
+        Some(star(v, [t[0] + push[0], t[1] + push[1]], at.normal))
     }
 
     /// What a side of a segment shows at a point of it.

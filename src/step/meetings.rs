@@ -11,8 +11,10 @@
 //! So the sum of the forces of both sides is 0 to rounding. Since sum_g w_g l_i l_j over a part of a face is never more than the mass
 //! matrix W_i of the whole face, the face points take no more energy than the points of the segment lose.
 
-use super::Scheme;
-use super::segments::{Chord, Face, MOST, REACH, SHORTEST, Segment, along, on_face, shared, whole};
+use super::segments::{
+    Chord, Face, MOST, OVERLAP, Overlap, Point, REACH, SHORTEST, Segment, along, on_face, shared, whole,
+};
+use super::{Law, Scheme};
 use crate::contact::{Interaction, Pairs};
 use crate::lane::LANES;
 use crate::mesh::{FACES, map};
@@ -43,7 +45,7 @@ pub(super) struct Contacts {
 
 impl Contacts {
     /// Those of `pairings`; none without any.
-    pub fn new(operators: &Operators, pairings: &[Pairing]) -> Option<Self> {
+    pub fn new(operators: &Operators, laws: &[Law], pairings: &[Pairing]) -> Option<Self> {
         if pairings.is_empty() {
             return None;
         }
@@ -53,7 +55,8 @@ impl Contacts {
                 for (lane, neighbour) in lanes.iter().enumerate() {
                     let Neighbour::Boundary(group) = neighbour else { continue };
                     if pairings.iter().any(|pairing| pairing.groups.contains(group)) {
-                        faces.push(Face::new(operators, [block, face, lane]));
+                        let law = &laws[operators.blocks.material[block]];
+                        faces.push(Face::new(operators, law, [block, face, lane]));
                         groups.push(*group);
                     }
                 }
@@ -130,6 +133,13 @@ impl Contacts {
 }
 
 impl Scheme {
+    /// The deepest overlap of bodies in `state`; none where no condition pairs any.
+    pub fn overlap(&self, state: &State) -> Option<Overlap> {
+        let mut meetings = Meetings::new(self)?;
+        meetings.find(self, state);
+        Some(meetings.deepest)
+    }
+
     /// By pairing of boundary groups, the cells whose faces may act on each other.
     pub fn cells_that_meet(&self) -> Vec<Vec<usize>> {
         let Some(contacts) = &self.contacts else { return vec![] };
@@ -151,6 +161,8 @@ pub(super) struct Meetings {
     /// Current positions of the points of each face, and of its ends.
     points: Vec<[[f64; 2]; MOST]>,
     ends: Vec<[[f64; 2]; 2]>,
+    /// The deepest overlap so far.
+    pub deepest: Overlap,
     /// Pairs that may meet, and the positions of the ends when they were found.
     candidates: Vec<(usize, [usize; 2])>,
     found_at: Vec<[[f64; 2]; 2]>,
@@ -192,14 +204,46 @@ impl Meetings {
             let h = contacts.faces[faces[0]].h.min(contacts.faces[faces[1]].h);
             let segment = match contacts.law(pairing).pairs() {
                 Pairs::Initial => Some(whole(faces.map(|face| &contacts.faces[face]), &chords, points, &line.basis)),
-                Pairs::Current => shared(&chords, points, &line.basis).filter(|found| found.is_near(line.m, h)),
+                Pairs::Current => {
+                    let overlap = contacts.faces[faces[0]].overlap_with(&contacts.faces[faces[1]]);
+                    let found = shared(&chords, points, &line.basis);
+                    found.filter(|found| found.is_near(line.m, h, overlap)).inspect(|found| {
+                        let depth = -found.mean_gap(line.m);
+                        let new = Overlap { depth, share: depth / h, x: self.ends[faces[0]][0] };
+                        self.deepest = self.deepest.or(new);
+                    })
+                }
             };
             if let Some(mut segment) = segment {
                 (segment.pairing, segment.faces) = (pairing, faces);
+                let [one, two] = faces.map(|face| contacts.faces[face].stiffness);
+                segment.stiffness = one * two / (one + two);
                 (0..2).for_each(|side| self.of_face[faces[side]].push((self.segments.len(), side)));
                 self.segments.push(segment);
             }
         }
+    }
+
+    /// The energy that springs between overlapping sides and edges with memory store in `state`, J/m.
+    pub fn stored(&mut self, scheme: &Scheme, state: &State) -> f64 {
+        self.find(scheme, state);
+        let Some(contacts) = &scheme.contacts else { return 0.0 };
+        let m = scheme.operators.line.m;
+        let of_segment = |segment: &Segment| -> f64 {
+            let (law, face) = (contacts.law(segment.pairing), &contacts.faces[segment.faces[0]]);
+            let of_point = |(i, at): (usize, &Point)| {
+                let place = [face.face / FACES, face.face % FACES, face.lane, i];
+                at.weight
+                    * law.stored(
+                        &segment.overlap(at),
+                        segment.length,
+                        scheme.boundary_memory.look(&state.boundary, place),
+                    )
+            };
+            // Points of a cut are those of the faces, in the order of the first.
+            segment.points[..m].iter().enumerate().map(of_point).sum()
+        };
+        self.segments.iter().map(of_segment).sum()
     }
 
     /// Current positions: X, and u where the state has it.
@@ -241,7 +285,7 @@ impl Meetings {
         self.found_at.is_empty() || self.found_at.iter().enumerate().any(far)
     }
 
-    /// Finds the pairs that may meet before [`Meetings::has_moved`]: those whose boxes, widened by a cell, overlap.
+    /// Finds the pairs that may meet before [`Meetings::has_moved`]: those whose boxes, widened, overlap.
     fn search(&mut self, contacts: &Contacts) {
         let bound = |face: usize, by: f64| {
             let [[a, b], [c, d]] = self.ends[face];
@@ -261,7 +305,7 @@ impl Meetings {
             let tree = RTree::bulk_load(boxes.collect());
             let is_self = pairing.groups[0] == pairing.groups[1];
             for &face in first {
-                let near = tree.locate_in_envelope_intersecting(bound(face, 2.0 * REACH * largest));
+                let near = tree.locate_in_envelope_intersecting(bound(face, (REACH + OVERLAP) * largest));
                 let new = |other: &usize| {
                     contacts.faces[*other].face / FACES != contacts.faces[face].face / FACES
                         || contacts.faces[*other].lane != contacts.faces[face].lane

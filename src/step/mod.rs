@@ -6,6 +6,7 @@
 //! read-only, [`State`] is all that changes, [`Work`] carries nothing from step to step: threads, restart and regrid follow
 //! from that.
 
+mod acceleration;
 mod across;
 mod at_points;
 mod balance;
@@ -70,6 +71,7 @@ pub use phase::{Part, Phase, Phases};
 pub use rescue::Rescue;
 pub use runge_kutta::Tableau;
 pub use scheme::{Method, Scheme};
+pub use segments::Overlap;
 pub use survey::{Speeds, Survey};
 pub use sweeps::Sweeps;
 
@@ -160,6 +162,16 @@ impl Work {
         }
     }
 
+    /// The energy that contact and cohesive edges store in `state`, J/m.
+    pub fn stored_in_contact(&mut self, scheme: &Scheme, state: &State) -> f64 {
+        self.meetings.as_mut().map_or(0.0, |meetings| meetings.stored(scheme, state))
+    }
+
+    /// The deepest overlap of bodies in the steps so far; none where no condition pairs any.
+    pub fn overlap(&self) -> Option<Overlap> {
+        self.meetings.as_ref().map(|meetings| meetings.deepest)
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let numbers = self.next.u.len() + self.next.internal.len() + 2 * self.speed.len() + self.tiles.numbers();
@@ -216,7 +228,7 @@ impl Scheme {
     /// The same; the time of the result is `time`: t + dt, but for a rounding.
     fn step_to(&self, state: &State, survey: &Survey, dt: f64, time: f64, work: &mut Work) {
         let (begin, finish) = (|block: Begin| block.run(), |block: Finish| block.run());
-        if let Some(meetings) = &mut work.meetings {
+        if let (true, Some(meetings)) = (built::CONTACT, &mut work.meetings) {
             meetings.find(self, state);
         }
         match &self.method {

@@ -53,6 +53,8 @@ impl Outside {
             out.first.push(out.cells.len() as u32);
         }
         out.entries = vec![ExternalWork::default(); out.cells.len()];
+        // The work between faces is told from that of the outside by them.
+        out.forces = scheme.contacts.as_ref().map(|_| vec![FaceForces::default(); out.cells.len()]);
         out
     }
 
@@ -73,12 +75,20 @@ pub(super) fn entry<'a, T>(first: &[u32], start: usize, all: &'a mut [T], block:
 }
 
 impl Work {
-    /// The work of the boundary and of sources in the last step, J/m, cells in a fixed order.
-    pub fn external_work(&self) -> [f64; 2] {
-        let mut sum = [0.0; 2];
+    /// The work of the boundary, of sources, and of what acts between faces of the body in the last step, J/m, cells in a fixed order. The
+    /// last is no work of the outside: contact takes it from the body.
+    pub fn external_work(&self, scheme: &Scheme) -> [f64; 3] {
+        let mut sum = [0.0; 3];
         for (work, &cells) in self.outside.entries.iter().zip(&self.outside.cells) {
             sum[0] += work.boundary.0[..cells].iter().sum::<f64>();
             sum[1] += work.source.0[..cells].iter().sum::<f64>();
+        }
+        if let (Some(contacts), Some(forces)) = (&scheme.contacts, &self.outside.forces) {
+            for face in &contacts.faces {
+                let entry = self.outside.first[face.face / FACES] as usize;
+                sum[2] += forces[entry].work[face.face % FACES].0[face.lane];
+            }
+            sum[0] -= sum[2];
         }
         sum
     }

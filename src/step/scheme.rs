@@ -132,13 +132,18 @@ impl Scheme {
         Self { sources, ..self }
     }
 
+    /// Whether faces of the body act on each other.
+    pub fn has_contacts(&self) -> bool {
+        self.contacts.is_some()
+    }
+
     /// With what acts between pairs of boundary groups. The memory of a law is that of the conditions of its groups
     /// ([`crate::contact::Paired`]).
     ///
     /// # Errors
     /// An edge of a cut ([`crate::contact::Pairs::Initial`]) without its other side.
     pub fn with_pairings(self, pairings: &[Pairing]) -> Result<Self> {
-        let contacts = Contacts::new(&self.operators, pairings);
+        let contacts = Contacts::new(&self.operators, &self.laws, pairings);
         if let Some([a, b]) = contacts.as_ref().and_then(Contacts::without_partner) {
             let what = format!("the edge from {a:?} to {b:?} has no other side");
             return Err(Error::input(

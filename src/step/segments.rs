@@ -1,6 +1,8 @@
 //! Faces that lie opposite each other, and the segments that they share.
 
+use super::Law;
 use crate::basis::Lagrange;
+use crate::contact;
 use crate::lane::LANES;
 use crate::mesh::{FACES, map};
 use crate::operators::Operators;
@@ -13,8 +15,11 @@ pub(super) const MOST: usize = super::Scheme::LARGEST_DEGREE + 1;
 /// Faces whose directions are further from opposite than this cosine do not meet.
 const OPPOSITE: f64 = -0.5;
 
-/// Faces that overlap by more than this part of the smaller cell are no pair: they are the two sides of a thin body.
-const OVERLAP: f64 = 0.25;
+/// Faces that overlap by more than this part of the smaller cell are no pair.
+pub(super) const OVERLAP: f64 = 1.0;
+
+/// The same for faces that lie back to back in the initial configuration: they may be the two sides of a thin body.
+const OVERLAP_OF_BACKS: f64 = 0.25;
 
 /// Pairs up to this part of a cell apart are looked at in each step. Between two searches faces may move by half of it.
 pub(super) const REACH: f64 = 0.5;
@@ -39,6 +44,8 @@ pub(super) struct Face {
     pub ends: [[f64; 2]; 2],
     /// h_e of its cell, m.
     pub h: f64,
+    /// rho0 c_p^2/h_e at F = 1, Pa/m.
+    pub stiffness: f64,
 }
 
 impl Face {
@@ -50,14 +57,25 @@ impl Face {
     pub fn key(&self) -> usize {
         self.face * LANES + self.lane
     }
+
+    /// By how much of the smaller cell it may overlap with another face that it meets.
+    pub fn overlap_with(&self, other: &Face) -> f64 {
+        let middle = |face: &Face| [0, 1].map(|k| 0.5 * (face.ends[0][k] + face.ends[1][k]));
+        let (own, other_middle) = (middle(self), middle(other));
+        let apart = [0, 1].map(|k| other_middle[k] - own[k]);
+        let is_behind = |face: &Face, to: [f64; 2]| dot(Chord::new(face, face.ends).outward(), to) < 0.0;
+        let back_to_back = is_behind(self, apart) && is_behind(other, apart.map(|x| -x));
+        if back_to_back { OVERLAP_OF_BACKS } else { OVERLAP }
+    }
 }
 
 impl Face {
-    pub fn new(operators: &Operators, [block, face, lane]: [usize; 3]) -> Self {
+    pub fn new(operators: &Operators, law: &Law, [block, face, lane]: [usize; 3]) -> Self {
         let corners = operators.geometry.corners_of(block, lane);
         let ends = [0.0, 1.0].map(|s| map::position(&corners, on_face(face, s)));
         let h = operators.geometry.blocks[block].lane(lane).h;
-        Self { face: FACES * block + face, lane, ends, h }
+        let speed = law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0];
+        Self { face: FACES * block + face, lane, ends, h, stiffness: law.density() * speed * speed / h }
     }
 }
 
@@ -89,6 +107,10 @@ pub(super) struct Segment {
     pub faces: [usize; 2],
     /// The current unit normal, out of the first.
     pub normal: [f64; 2],
+    /// Its length, m.
+    pub length: f64,
+    /// Of the cells of both faces in a row, Pa/m.
+    pub stiffness: f64,
     /// Its points.
     pub points: [Point; MOST],
 }
@@ -118,6 +140,11 @@ impl Chord {
         let [a, b] = face.ends;
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
         Self { from, to, direction: d.map(|d| d / current), length, reversed }
+    }
+
+    /// The unit normal out of the body, which is to the left.
+    fn outward(&self) -> [f64; 2] {
+        tangent(self.direction).map(|x| -x)
     }
 
     /// The coordinate of its points at `x` along `axis`.
@@ -164,7 +191,7 @@ pub(super) fn shared(chords: &[Chord; 2], points: [&[[f64; 2]; MOST]; 2], basis:
     if high - low <= SHORTEST * a.length.min(b.length) {
         return None;
     }
-    let mut out = Segment { pairing: 0, faces: [0; 2], normal, points: [Point::default(); MOST] };
+    let mut out = Segment::empty(normal, high - low);
     for (out, (node, weight)) in out.points.iter_mut().zip(basis.nodes.iter().zip(&basis.weights)) {
         let x = low + (high - low) * node;
         let mut at = [[0.0; 2]; 2];
@@ -194,7 +221,7 @@ pub(super) fn whole(
     // Sides that have turned onto each other have no mean direction.
     let axis = if size > SHORTEST { mean.map(|x| x / size) } else { a.direction };
     let normal = tangent(axis).map(|x| -x);
-    let mut out = Segment { pairing: 0, faces: [0; 2], normal, points: [Point::default(); MOST] };
+    let mut out = Segment::empty(normal, a.length);
     let far = |end: usize| {
         let (x, y) = (faces[0].ends[0], faces[1].ends[end]);
         (x[0] - y[0]).hypot(x[1] - y[1])
@@ -210,9 +237,43 @@ pub(super) fn whole(
 }
 
 impl Segment {
-    /// Whether its sides are near each other, and do not overlap so far that they are the two sides of a thin body.
-    pub fn is_near(&self, m: usize, h: f64) -> bool {
+    /// Without points and faces yet.
+    fn empty(normal: [f64; 2], length: f64) -> Self {
+        Self { pairing: 0, faces: [0; 2], normal, length, stiffness: 0.0, points: [Point::default(); MOST] }
+    }
+
+    /// How far its sides overlap at a point.
+    pub fn overlap(&self, at: &Point) -> contact::Overlap {
+        contact::Overlap { depth: (-at.gap).max(0.0), stiffness: self.stiffness }
+    }
+
+    /// Whether its sides are near each other, and overlap by no more than a part of the length `h`.
+    pub fn is_near(&self, m: usize, h: f64, overlap: f64) -> bool {
         let gaps = || self.points[..m].iter().map(|point| point.gap);
-        gaps().fold(f64::INFINITY, f64::min) < REACH * h && gaps().sum::<f64>() > -OVERLAP * h * m as f64
+        gaps().fold(f64::INFINITY, f64::min) < REACH * h && self.mean_gap(m) > -overlap * h
+    }
+
+    /// The mean of the gaps at its points, m.
+    pub fn mean_gap(&self, m: usize) -> f64 {
+        self.points[..m].iter().map(|point| point.gap).sum::<f64>() / m as f64
+    }
+}
+
+/// The deepest overlap of two bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Overlap {
+    /// The mean of a segment of two faces, m.
+    pub depth: f64,
+    /// The same over the length h_e of the smaller cell. Beyond 1 faces are no pair any more.
+    pub share: f64,
+    /// Where, in the current configuration, m.
+    pub x: [f64; 2],
+}
+
+impl Overlap {
+    /// The deeper one, by the share of a cell.
+    #[must_use]
+    pub fn or(self, other: Overlap) -> Overlap {
+        if other.share > self.share { other } else { self }
     }
 }

@@ -1,13 +1,13 @@
 //! Sources of momentum: rho0 b at points and nodes, and the work that they do.
 
+use super::acceleration::{Acceleration, Vectors, add_times, by_lane};
 use super::balance::add;
 use super::block::Block;
 use super::outside::ExternalWork;
 use super::predictor::Arrays;
 use super::sweeps::Sweep;
 use super::volume;
-use crate::lane::{F8, LANES, Lanes, Work, load_array};
-use crate::mesh::map;
+use crate::lane::{F8, Lanes, Work, load_array};
 use crate::operators::Points;
 use crate::state::UNKNOWNS;
 use crate::tensor::{AXES, DEFORMATION, dot};
@@ -19,8 +19,9 @@ impl Block<'_> {
     /// b at the points and time nodes with v of t_n, for the first guess of the predictor, into `arrays.source`.
     pub fn sources_at_points(&self, points: &Points, count: usize, arrays: &mut Arrays) {
         let (start, inverse) = (&arrays.start, 1.0 / self.law().density());
-        let now = |p: usize, lane: usize| [0, 1].map(|k| start[UNKNOWNS * p + DEFORMATION + k].0[lane] * inverse);
-        let v = |_: &[F8], p: usize, lane: usize| [now(p, lane); MOST_TIMES];
+        let v = |_: &[F8], p: usize, _: usize| {
+            [0, 1].map(|k| by_lane(|lane| start[UNKNOWNS * p + DEFORMATION + k].0[lane] * inverse))
+        };
         self.sources_with(points, count, v, &mut arrays.source);
     }
 
@@ -29,72 +30,62 @@ impl Block<'_> {
         let count = self.scheme.operators.block_points(self.number);
         let (times, dt, density) = (self.stage.times.len(), self.stage.dt, self.law().density());
         let (start, rates) = (&arrays.start, &arrays.rates[0]);
-        let at = |known: &[F8], s: usize, p: usize, lane: usize| {
+        let v = |known: &[F8], p: usize, s: usize| {
             [0, 1].map(|k| {
-                let rate = |j: usize| rates[UNKNOWNS * (j * count + p) + DEFORMATION + k].0[lane];
-                let b = |j: usize| known[AXES * (j * count + p) + k].0[lane];
-                let flux: f64 = (0..sweep.from).map(|j| sweep.at_times[s * sweep.from + j] * rate(j)).sum();
-                let given: f64 = (0..times).map(|j| integration[s * times + j] * b(j)).sum();
-                start[UNKNOWNS * p + DEFORMATION + k].0[lane] / density + dt * (flux / density + given)
+                let (mut flux, mut given) = (F8::ZERO, F8::ZERO);
+                for j in 0..sweep.from {
+                    let rate = &rates[UNKNOWNS * (j * count + p) + DEFORMATION + k];
+                    add_times(&mut flux, sweep.at_times[s * sweep.from + j], rate);
+                }
+                for j in 0..times {
+                    add_times(&mut given, integration[s * times + j], &known[AXES * (j * count + p) + k]);
+                }
+                let now = &start[UNKNOWNS * p + DEFORMATION + k];
+                by_lane(|lane| now.0[lane] / density + dt * (flux.0[lane] / density + given.0[lane]))
             })
-        };
-        let v = |known: &[F8], p: usize, lane: usize| {
-            std::array::from_fn(|s| if s < times { at(known, s, p, lane) } else { [0.0; AXES] })
         };
         self.sources_with(points, count, v, &mut arrays.source);
     }
 
-    /// b at the points and time nodes, [time node][point][2], with v at all time nodes by v(b so far, point, lane).
-    fn sources_with(
-        &self,
-        points: &Points,
-        count: usize,
-        v: impl Fn(&[F8], usize, usize) -> [[f64; AXES]; MOST_TIMES],
-        out: &mut [F8],
-    ) {
-        for lane in 0..LANES {
-            let corners = self.scheme.operators.geometry.corners_of(self.number, lane);
-            for p in 0..count {
-                let at = points.first[self.number] + p;
-                let x = map::position(&corners, [0, 1].map(|k| points.parent[AXES * at + k].0[lane]));
-                let v = v(out, p, lane);
-                for (s, node) in self.stage.times.iter().enumerate() {
-                    let b = self.acceleration(x, node.time, v[s], lane);
-                    for (k, b) in b.into_iter().enumerate() {
-                        out[AXES * (s * count + p) + k].0[lane] = b;
-                    }
+    /// b at the points and time nodes, [time node][point][2], with v at a time node by v(b so far, point, time node).
+    fn sources_with(&self, points: &Points, count: usize, v: impl Fn(&[F8], usize, usize) -> Vectors, out: &mut [F8]) {
+        let sources = Acceleration::of(self);
+        for p in 0..count {
+            let at = points.first[self.number] + p;
+            let x = sources.places(|lane| [0, 1].map(|k| points.parent[AXES * at + k].0[lane]));
+            let mut velocities = [[F8::ZERO; AXES]; MOST_TIMES];
+            if sources.varies.velocity {
+                // All of them before b is written over.
+                for (s, velocity) in velocities.iter_mut().enumerate().take(self.stage.times.len()) {
+                    *velocity = v(out, p, s);
                 }
+            }
+            let mut b = [F8::ZERO; AXES];
+            for (s, node) in self.stage.times.iter().enumerate() {
+                if s == 0 || sources.varies.time || sources.varies.velocity {
+                    b = sources.at(&x, node.time, &velocities[s]);
+                }
+                out[AXES * (s * count + p)..][..AXES].copy_from_slice(&b);
             }
         }
     }
 
     /// b at the nodes, averaged over the time nodes, [2][node]; `mean` has F and v of the stage, [node][6].
     pub fn sources_at_nodes(&self, mean: &[F8], out: &mut [F8]) {
-        let n = self.scheme.operators.nodes();
-        for lane in 0..LANES {
-            let corners = self.scheme.operators.geometry.corners_of(self.number, lane);
-            for a in 0..n {
-                let x = map::position(&corners, self.scheme.operators.line.basis.node_2d(a));
-                let v = [0, 1].map(|k| mean[UNKNOWNS * a + DEFORMATION + k].0[lane]);
-                let mut average = [0.0; 2];
-                for node in self.stage.times {
-                    let b = self.acceleration(x, node.time, v, lane);
-                    average = [0, 1].map(|k| average[k] + node.weight * b[k]);
+        let (n, sources) = (self.scheme.operators.nodes(), Acceleration::of(self));
+        for a in 0..n {
+            let xi = self.scheme.operators.line.basis.node_2d(a);
+            let x = sources.places(|_| xi);
+            let v = [0, 1].map(|k| mean[UNKNOWNS * a + DEFORMATION + k]);
+            let (mut average, mut b) = ([F8::ZERO; AXES], [F8::ZERO; AXES]);
+            for (s, node) in self.stage.times.iter().enumerate() {
+                if s == 0 || sources.varies.time {
+                    b = sources.at(&x, node.time, &v);
                 }
-                (0..AXES).for_each(|k| out[k * n + a].0[lane] = average[k]);
+                (0..AXES).for_each(|k| add_times(&mut average[k], node.weight, &b[k]));
             }
+            (0..AXES).for_each(|k| out[k * n + a] = average[k]);
         }
-    }
-
-    /// Sum of all sources; padding lanes stay at rest.
-    fn acceleration(&self, x: [f64; 2], time: f64, v: [f64; 2], lane: usize) -> [f64; 2] {
-        if lane >= self.cells() {
-            return [0.0; 2];
-        }
-        self.scheme.sources.iter().fold([0.0; 2], |sum, source| {
-            let b = source.acceleration(x, time, v, self.material());
-            [sum[0] + b[0], sum[1] + b[1]]
-        })
     }
 }
 

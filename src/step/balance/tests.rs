@@ -7,7 +7,7 @@ use crate::boundary::{
 use crate::material::LinearElastic;
 use crate::mesh::Mesh;
 use crate::riemann::{Acoustic, AcousticCurl, Rusanov};
-use crate::source::BodyForce;
+use crate::source::{BodyForce, Varies};
 use crate::state::State;
 use crate::step::Flux;
 use crate::step::Law;
@@ -105,7 +105,11 @@ fn small_steps_lose_what_jumps_take_for_any_degree_two_materials_and_a_source() 
         assert_eq!(balance.work(), 0.0, "a wall at rest does no work");
     }
     let (base, densities) = chessboard(&mesh, Kind::RkDgfem);
-    let force = BodyForce { value: [data(|x, _| 1.0 - x[1]), data(|_, t| -3.0 + t)], material: Some(1) };
+    let force = BodyForce {
+        value: [data(|x, _| 1.0 - x[1]), data(|_, t| -3.0 + t)],
+        varies: Varies::PLACE_AND_TIME,
+        material: Some(1),
+    };
     let scheme = Scheme { sources: vec![Arc::new(force)], ..base };
     let mut state = state(&mesh, &scheme, |x, a| {
         let u = rough(x, a);
@@ -150,7 +154,8 @@ fn the_balance_changes_no_bit_of_the_state_and_has_the_same_bits_on_any_number_o
     // 200 blocks: large enough for three tiles, of all methods.
     let mesh = distorted(40);
     for kind in KINDS {
-        let force = || BodyForce { value: [data(|x, _| x[1]), data(|_, t| t)], material: None };
+        let force =
+            || BodyForce { value: [data(|x, _| x[1]), data(|_, t| t)], varies: Varies::PLACE_AND_TIME, material: None };
         let base = scheme(&mesh, kind, 2, &midpoints(&mesh, 2), CONDITIONS[3].1);
         let scheme = Scheme { sources: vec![Arc::new(force())], ..base };
         let mut plain = state(&mesh, &scheme, rough);

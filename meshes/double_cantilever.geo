@@ -1,0 +1,46 @@
+// A beam of 2 m x .4 m with a crack of .5 m along its middle from the left, and a joint along the rest.
+DefineConstant[ n = {8, Name "Cells over the height (even)"} ];
+l = 2.0;
+a = 0.5;
+b = 0.2;
+Point(1) = {0, 0, 0};
+Point(2) = {a, 0, 0};
+Point(3) = {l, 0, 0};
+Point(4) = {0, b, 0};
+Point(5) = {a, b, 0};
+Point(6) = {l, b, 0};
+Point(7) = {0, 2 * b, 0};
+Point(8) = {a, 2 * b, 0};
+Point(9) = {l, 2 * b, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {4, 5};
+Line(4) = {5, 6};
+Line(5) = {7, 8};
+Line(6) = {8, 9};
+Line(7) = {1, 4};
+Line(8) = {2, 5};
+Line(9) = {3, 6};
+Line(10) = {4, 7};
+Line(11) = {5, 8};
+Line(12) = {6, 9};
+Curve Loop(1) = {1, 8, -3, -7};
+Curve Loop(2) = {2, 9, -4, -8};
+Curve Loop(3) = {3, 11, -5, -10};
+Curve Loop(4) = {4, 12, -6, -11};
+For k In {1:4}
+  Plane Surface(k) = {k};
+  Transfinite Surface {k};
+  Recombine Surface {k};
+EndFor
+Transfinite Curve {7, 8, 9, 10, 11, 12} = n / 2 + 1;
+Transfinite Curve {1, 3, 5} = 5 * n / 4 + 1;
+Transfinite Curve {2, 4, 6} = 15 * n / 4 + 1;
+Physical Curve("left", 1) = {7, 10};
+Physical Curve("right", 2) = {9, 12};
+Physical Curve("bottom", 3) = {1, 2};
+Physical Curve("top", 4) = {5, 6};
+Physical Curve("crack", 5) = {3};
+Physical Curve("joint", 6) = {4};
+Physical Surface("beam", 7) = {1, 2, 3, 4};
+Mesh.MshFileVersion = 4.1;
