@@ -24,7 +24,11 @@ const FORMULAS: &[(&str, &str, &str)] = &[
     ("[[boundary]]", "polygon", "unilateral contact with the obstacle at x = X + u, along its normal"),
     ("[[boundary]]", "pressure", "t* = -p(X, t) cof(F) n"),
     ("[[boundary]]", "foundation", "t* = -k u - c v"),
-    ("[[boundary]]", "contact", "t_n = min(0, t*_n + max(0, gap)/(y dt)) + k min(0, gap), |t_s| <= mu |t_n|, y = 1/z_1 + 1/z_2"),
+    (
+        "[[boundary]]",
+        "contact",
+        "t_n = min(0, t*_n + max(0, gap)/(y dt)) + k min(0, gap), |t_s| <= mu |t_n|, y = 1/z_1 + 1/z_2",
+    ),
     ("[[boundary]]", "cohesive", "t = (1 - d) K w up to the strength, then a line to 0; the area is the energy"),
     ("[[boundary]]", "periodic", "the flux between the cells of both groups"),
     ("[[source]]", "body-force", "dp/dt += rho0 b(X, t)"),

@@ -3,7 +3,7 @@
 use super::{Limits, Report, Treated, Watch};
 use crate::error::Result;
 use crate::step::phase::Phases;
-use crate::step::{Balance, Totals};
+use crate::step::{Balance, Overlap, Totals};
 use crate::words::{Saved, Words};
 use cpu_time::ProcessTime;
 use std::time::Instant;
@@ -24,6 +24,10 @@ impl Report {
         self.watch.save(to);
         to.flag(self.treated.is_some());
         self.treated.iter().for_each(|treated| treated.save(to));
+        to.flag(self.overlap.is_some());
+        self.overlap.iter().for_each(|Overlap { depth, share, x }| {
+            to.real(*depth).real(*share).real(x[0]).real(x[1]);
+        });
     }
 
     /// The figures of a run that goes on under a watch with these limits.
@@ -45,8 +49,14 @@ impl Report {
         out.balance = if from.flag()? { Some(restored_balance(from)?) } else { None };
         out.watch = Watch::restored(from, limits)?;
         out.treated = if from.flag()? { Some(Treated::restored(from)?) } else { None };
+        out.overlap = if from.flag()? { Some(restored_overlap(from)?) } else { None };
         Ok(out)
     }
+}
+
+fn restored_overlap(from: &mut Saved) -> Result<Overlap> {
+    let [depth, share, x, y] = from.array()?;
+    Ok(Overlap { depth, share, x: [x, y] })
 }
 
 fn restored_phases(from: &mut Saved) -> Result<Phases> {
@@ -81,21 +91,22 @@ fn restored_totals(from: &mut Saved) -> Result<Totals> {
 
 fn save_balance(balance: &Balance, to: &mut Words) {
     let Balance { start, energy, boundary_work, source_work, flux_dissipation, boundary_dissipation, .. } = *balance;
-    let Balance { curl_dissipation, correction_dissipation, regrid_dissipation, jumps, .. } = *balance;
+    let Balance { contact_work, curl_dissipation, correction_dissipation, regrid_dissipation, jumps, .. } = *balance;
     to.reals(&[start, energy, boundary_work, source_work, flux_dissipation, boundary_dissipation]);
-    to.reals(&[curl_dissipation, correction_dissipation, regrid_dissipation, jumps]);
+    to.reals(&[contact_work, curl_dissipation, correction_dissipation, regrid_dissipation, jumps]);
 }
 
 fn restored_balance(from: &mut Saved) -> Result<Balance> {
     from.count()?;
     let [start, energy, boundary_work, source_work, flux_dissipation, boundary_dissipation] = from.array()?;
     from.count()?;
-    let [curl_dissipation, correction_dissipation, regrid_dissipation, jumps] = from.array()?;
+    let [contact_work, curl_dissipation, correction_dissipation, regrid_dissipation, jumps] = from.array()?;
     Ok(Balance {
         start,
         energy,
         boundary_work,
         source_work,
+        contact_work,
         flux_dissipation,
         boundary_dissipation,
         curl_dissipation,

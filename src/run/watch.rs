@@ -78,16 +78,17 @@ impl Watch {
     }
 
     pub(super) fn save(&self, to: &mut Words) {
-        let Self { work, regrids, scale, lowest, made, warned, steps, limits: _, cells: _ } = self;
-        to.real(work[0]).real(work[1]).real(*regrids).real(*scale).real(*lowest);
+        let Self { work, contact_work, stored, regrids, scale, lowest, made, warned, steps, limits: _, cells: _ } =
+            self;
+        to.real(work[0]).real(work[1]).real(*contact_work).real(*stored).real(*regrids).real(*scale).real(*lowest);
         to.real(made.joule).real(made.share).real(made.time).count(made.step).flag(*warned).count(*steps);
     }
 
     pub(super) fn restored(from: &mut Saved, limits: Option<Limits>) -> Result<Self> {
-        let (work, [regrids, scale, lowest]) = (from.array()?, from.array()?);
+        let (work, [contact_work, stored, regrids, scale, lowest]) = (from.array()?, from.array()?);
         let ([joule, share, time], step) = (from.array()?, from.count()?);
         let (made, warned, steps) = (EnergyMade { joule, share, time, step }, from.flag()?, from.count()?);
-        Ok(Self { limits, work, regrids, scale, lowest, made, warned, steps, cells: vec![] })
+        Ok(Self { limits, work, contact_work, stored, regrids, scale, lowest, made, warned, steps, cells: vec![] })
     }
 
     /// Whether it has something to look at every so many steps.
