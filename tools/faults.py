@@ -22,7 +22,7 @@ PAGE = Path(__file__).resolve().parent.parent / "docs" / "reliability.md"
 BEGIN, END = "<!-- begin of make faults -->", "<!-- end of make faults -->"
 
 SCENE = """title = "fault campaign"
-mesh.rectangle = { size = [1.0, 0.5], cells = [6, 3] }
+mesh.rectangle = { size = [1.0, 0.5], cells = [4, 2] }
 boundary = [
     { group = "left", kind = "unilateral", gap = 1e-3 },
     { group = "bottom", kind = "symmetry" },
@@ -44,7 +44,7 @@ degree = 2
 [checkpoint]
 every_steps = 1
 [time]
-end = 1.5e-4
+end = 1e-4
 [[output]]
 kind = "fields"
 every_steps = 10
@@ -261,7 +261,7 @@ def main():
         bad = found["lost"] + found["wrong"]
         text.append("SIGKILL at random moments, then `dgmpm resume`:\n\n" + table(found.keys(), [found.values()]))
         size = sum(path.stat().st_size for path in (work / "whole").rglob("*") if path.is_file()) // 1024
-        disks = full_disks(work, whole, [max(8, size * k // 24) for k in range(1, 25)])
+        disks = full_disks(work, whole, [max(8, size * k // 16) for k in range(1, 17)])
         if disks:
             bad += disks["lost"] + disks["wrong"]
             text.append("A disk (tmpfs) that runs full, and then has space:\n\n" + table(disks.keys(), [disks.values()]))
