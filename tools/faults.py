@@ -22,7 +22,7 @@ PAGE = Path(__file__).resolve().parent.parent / "docs" / "reliability.md"
 BEGIN, END = "<!-- begin of make faults -->", "<!-- end of make faults -->"
 
 SCENE = """title = "fault campaign"
-mesh.rectangle = { size = [1.0, 0.5], cells = [6, 3] }
+mesh.rectangle = { size = [1.0, 0.5], cells = [4, 2] }
 boundary = [
     { group = "left", kind = "unilateral", gap = 1e-3 },
     { group = "bottom", kind = "symmetry" },
@@ -44,7 +44,7 @@ degree = 2
 [checkpoint]
 every_steps = 1
 [time]
-end = 1.5e-4
+end = 1e-4
 [[output]]
 kind = "fields"
 every_steps = 10
@@ -182,7 +182,9 @@ def full_disks(work, whole, sizes):
                 print(f"{size} KiB: {differences(whole, results(disk / 'r'))}", file=sys.stderr)
             shutil.rmtree(disk / "r", ignore_errors=True)
     finally:
-        subprocess.run(["umount", str(disk)])
+        # Lazily where something still looks into it, such as an indexer of the system.
+        if subprocess.run(["umount", str(disk)], stderr=subprocess.DEVNULL).returncode != 0:
+            subprocess.run(["umount", "-l", str(disk)], check=True)
     out["files"] = ", ".join(sorted(out["files"]))
     return out
 
@@ -217,8 +219,10 @@ def corruptions(work, whole, count, dice):
         # The file itself, if the run has not written it again, is looked at by the commands that read it.
         healed = after.get(name) == reference.get(name)
         if code != 0 or "warning: " in errors:
-            row["found" if code in (0, 2) else "wrong"] += 1
-            if code not in (0, 2):
+            # A damaged checkpoint gives way to the one before, with a warning and the same results.
+            good = code == 2 or (code == 0 and same and healed)
+            row["found" if good else "wrong"] += 1
+            if not good:
                 print(f"{name}: exit code {code}, {errors}", file=sys.stderr)
         elif same and healed:
             row["harmless"] += 1
@@ -261,7 +265,7 @@ def main():
         bad = found["lost"] + found["wrong"]
         text.append("SIGKILL at random moments, then `dgmpm resume`:\n\n" + table(found.keys(), [found.values()]))
         size = sum(path.stat().st_size for path in (work / "whole").rglob("*") if path.is_file()) // 1024
-        disks = full_disks(work, whole, [max(8, size * k // 24) for k in range(1, 25)])
+        disks = full_disks(work, whole, [max(8, size * k // 16) for k in range(1, 17)])
         if disks:
             bad += disks["lost"] + disks["wrong"]
             text.append("A disk (tmpfs) that runs full, and then has space:\n\n" + table(disks.keys(), [disks.values()]))

@@ -1,7 +1,9 @@
 //! Where results go, and on how many threads a run is stepped.
 
+use super::print::note;
 use super::threads::start_threads;
 use crate::error::{Error, Result};
+use crate::format::count;
 use crate::run::Folder;
 use crate::scene::Scene;
 use std::path::{Path, PathBuf};
@@ -48,4 +50,11 @@ pub fn keep_as(path: &Path, force: bool, other: &str) -> Result<()> {
         return Err(Error::input(format!("{} exists", path.display()), remedy));
     }
     Ok(())
+}
+
+/// Names what stays of the files in the folders of results.
+pub fn kept_files(files: &[PathBuf]) {
+    if let Some(first) = files.first() {
+        note(format!("{} that dgmpm has not made, such as {}: kept", count(files.len(), "file"), first.display()));
+    }
 }

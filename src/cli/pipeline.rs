@@ -2,16 +2,15 @@
 
 use super::args::SceneArgs;
 use super::interrupt::{self, INTERRUPT, SAVE};
-use super::output::RunArgs;
-use super::print::{note, say, warn};
+use super::output::{RunArgs, kept_files};
+use super::print::{say, warn};
 use super::progress::Progress;
 use super::report::report;
 use super::{summary, threads};
 use crate::error::Result;
-use crate::format::count;
 use crate::problem::{Files, Problem, Setup, Store, check_folder, check_run, write_input};
 use crate::run::Folder;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Makes and runs it; `operators` is used if it was built from the same input.
 pub fn run(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &RunArgs) -> Result<()> {
@@ -41,17 +40,9 @@ pub fn run(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &Run
     // Quantities that the start of the run has not.
     problem.gauge()?;
     say(&problem.origin);
-    kept(&folder.clear_results()?);
+    kept_files(&folder.clear_results()?);
     write_input(&problem, files, &folder, certificates)?;
     solve(problem, &folder)
-}
-
-/// Names what stays of the files in the folders of results.
-fn kept(files: &[PathBuf]) {
-    if let Some(first) = files.first() {
-        let count = count(files.len(), "file");
-        note(format!("{count} that dgmpm has not made, such as {}: kept", first.display()));
-    }
 }
 
 /// Steps to the end, and says what came of it.

@@ -40,11 +40,8 @@ pub fn run(args: &Args) -> Result<()> {
     let stopped = Stopped::read(&from, args.step)?;
     let mesh = read_mesh(&args.mesh)?;
     let to = Folder::new(&args.out.clone().unwrap_or_else(|| renamed(&args.run)));
-    stopped.check_target(&to, &args.mesh)?;
-    if !args.force {
-        to.refuse_results()?;
-        keep(&to.scene(), args.force)?;
-    }
+    stopped.check_target(&to, &args.mesh, args.force)?;
+    keep(&to.scene(), args.force)?;
     let (problem, totals) = stopped.on(mesh, policy)?;
     changes(&totals).iter().for_each(say);
     problem.write_start(&to)?;

@@ -92,7 +92,7 @@ impl Scene {
             );
             return Err(fail(what, "give the mesh of that run, or bring it over by `dgmpm regrid`"));
         }
-        if !(snapshot.time < self.end) {
+        if snapshot.time.is_nan() || snapshot.time >= self.end {
             let what = format!("the snapshot is at {:e} s, and the run ends at {:e} s", snapshot.time, self.end);
             return Err(fail(what, "give a later time.end"));
         }

@@ -31,11 +31,14 @@ impl<'a> Stopped<'a> {
     }
 
     /// Refuses a folder as the place of the result that is the one of the run itself, that has the file of the new `mesh` among what is
-    /// removed, or that has files of the user under the names that are written.
+    /// removed, or that has files of the user under the names that are written; without `force` also one with results.
     ///
     /// # Errors
     /// One of these.
-    pub fn check_target(&self, to: &Folder, mesh: &Path) -> Result<()> {
+    pub fn check_target(&self, to: &Folder, mesh: &Path, force: bool) -> Result<()> {
+        if !force {
+            to.refuse_results()?;
+        }
         let same =
             |a: &Path, b: &Path| a == b || a.canonicalize().ok().is_some_and(|a| b.canonicalize().ok() == Some(a));
         if same(&to.root, &self.folder.root) {

@@ -24,9 +24,6 @@ mod warnings;
 
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
-use toml_edit::{Document, DocumentMut};
-
 use crate::error::{Error, Place, Result};
 use crate::expression::Expression;
 use crate::registry::controls::Control;
@@ -35,6 +32,9 @@ pub use names::Histories;
 use origin::{Origin, Part};
 pub use quantities::MEASURES;
 pub use reference::reference;
+use serde::Serialize;
+pub use times::Checkpoint;
+use toml_edit::{Document, DocumentMut};
 
 /// A whole scene.
 #[derive(Debug, Clone, Serialize)]
@@ -194,16 +194,6 @@ pub struct Watch {
     pub warn: f64,
     /// The run stops.
     pub stop: f64,
-}
-
-/// When a run is kept so that it can be resumed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Checkpoint {
-    /// Every so many minutes.
-    Minutes(f64),
-    /// Every so many steps.
-    Steps(usize),
 }
 
 /// Method, degrees, flux and step size.

@@ -4,7 +4,7 @@ use super::origin::Origin;
 use super::points::General;
 use super::reader::Reader;
 use super::tables::{self, SAFETY, WATCHED};
-use super::{Boundary, Checkpoint, Cloud, Exact, Initial, Material, Mesh, Scene, Scheme, Source, Step, Watch};
+use super::{Boundary, Cloud, Exact, Initial, Material, Mesh, Scene, Scheme, Source, Step, Watch};
 use crate::error::Result;
 use crate::expression::Expression;
 use crate::registry::{
@@ -72,7 +72,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         quantities: super::quantities::quantities(quantity_tables, &materials, [start, end], degree)?,
         materials,
         watch: watch(watch_table.as_mut())?,
-        checkpoint: checkpoint_table.as_mut().map(checkpoint).transpose()?,
+        checkpoint: checkpoint_table.as_mut().map(super::times::checkpoint).transpose()?,
         regrids: super::regrid::regrids(regrid_tables, [start, end], degree)?,
         origin: Origin::default(),
     };
@@ -315,23 +315,6 @@ fn watch(table: Option<&mut Reader>) -> Result<Option<Watch>> {
         return Err(table.wrong("warn", what, "give a share up to that of `energy`, or leave it out"));
     }
     Ok((!off).then_some(Watch { warn, stop }))
-}
-
-/// Minutes between two checkpoints, where the table does not say. A checkpoint of 1e6 DoF takes .2 s.
-const MINUTES: f64 = 10.0;
-
-fn checkpoint(table: &mut Reader) -> Result<Checkpoint> {
-    let values = table.values(tables::CHECKPOINT)?;
-    table.finish()?;
-    match (values.maybe_integer("every_steps"), values.maybe("every_minutes")) {
-        (Some(_), Some(_)) => Err(table.wrong(
-            "every_minutes",
-            "[checkpoint] has both `every_steps` and `every_minutes`",
-            "keep one of them",
-        )),
-        (Some(steps), None) => Ok(Checkpoint::Steps(steps)),
-        (None, minutes) => Ok(Checkpoint::Minutes(minutes.unwrap_or(MINUTES))),
-    }
 }
 
 fn time(table: &mut Reader) -> Result<(f64, f64)> {

@@ -2,8 +2,9 @@
 
 use super::When;
 use super::reader::Reader;
-use super::tables::{EXACT_TIMES, WHEN};
+use super::tables::{CHECKPOINT, EXACT_TIMES, WHEN};
 use crate::error::Result;
+use serde::Serialize;
 
 /// Times that a run may have of one kind: more than the steps of any run that ends.
 const MOST: f64 = 1e9;
@@ -51,4 +52,32 @@ fn when(table: &mut Reader, [start, end]: [f64; 2]) -> Result<Option<When>> {
     });
     let every_steps = values.maybe_integer("every_steps").map(When::EverySteps);
     Ok(at.or(values.maybe("every").map(When::Every)).or(every_steps))
+}
+
+/// When a run is kept so that it can be resumed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Checkpoint {
+    /// Every so many minutes.
+    Minutes(f64),
+    /// Every so many steps.
+    Steps(usize),
+}
+
+/// Minutes between two checkpoints, where the table does not say. A checkpoint of 1e6 DoF takes .2 s.
+const MINUTES: f64 = 10.0;
+
+/// Reads `[checkpoint]`.
+pub(super) fn checkpoint(table: &mut Reader) -> Result<Checkpoint> {
+    let values = table.values(CHECKPOINT)?;
+    table.finish()?;
+    match (values.maybe_integer("every_steps"), values.maybe("every_minutes")) {
+        (Some(_), Some(_)) => Err(table.wrong(
+            "every_minutes",
+            "[checkpoint] has both `every_steps` and `every_minutes`",
+            "keep one of them",
+        )),
+        (Some(steps), None) => Ok(Checkpoint::Steps(steps)),
+        (None, minutes) => Ok(Checkpoint::Minutes(minutes.unwrap_or(MINUTES))),
+    }
 }
