@@ -118,12 +118,18 @@ const SHORT: usize = 64;
 const MIDDLE: usize = 512;
 const LONG: usize = 4096;
 
-/// Writes a list of texts, of a fixed length.
+/// Writes a list of texts, of a fixed length; of variable length, which only sealed files are read with, where one is longer than
+/// 4096 bytes.
 pub fn put_texts(group: &h5::Group, name: &str, texts: &[String]) -> h5::Result<()> {
     match texts.iter().map(String::len).max().unwrap_or(0) {
         length if length <= SHORT => put_fixed::<SHORT>(group, name, texts),
         length if length <= MIDDLE => put_fixed::<MIDDLE>(group, name, texts),
-        _ => put_fixed::<LONG>(group, name, texts),
+        length if length <= LONG => put_fixed::<LONG>(group, name, texts),
+        _ => {
+            let values = texts.iter().map(|text| variable(text)).collect::<h5::Result<Vec<_>>>()?;
+            let new = group.new_dataset::<VarLenUnicode>().obj_track_times(false).shape(values.len());
+            new.create(name)?.write_raw(&values)
+        }
     }
 }
 
@@ -133,17 +139,22 @@ fn put_fixed<const N: usize>(group: &h5::Group, name: &str, texts: &[String]) ->
     if values.is_empty() { Ok(()) } else { dataset.write_raw(&values) }
 }
 
-/// Writes a text attribute, of a fixed length.
+/// Writes a text attribute, of a fixed length as far as [`put_texts`] has them.
 pub fn put_attribute(group: &h5::Group, name: &str, text: &str) -> h5::Result<()> {
     match text.len() {
-        length if length <= SHORT => {
-            group.new_attr::<FixedUnicode<SHORT>>().create(name)?.write_scalar(&fixed::<SHORT>(text)?)
-        }
-        length if length <= MIDDLE => {
-            group.new_attr::<FixedUnicode<MIDDLE>>().create(name)?.write_scalar(&fixed::<MIDDLE>(text)?)
-        }
-        _ => group.new_attr::<FixedUnicode<LONG>>().create(name)?.write_scalar(&fixed::<LONG>(text)?),
+        length if length <= SHORT => put_fixed_attribute::<SHORT>(group, name, text),
+        length if length <= MIDDLE => put_fixed_attribute::<MIDDLE>(group, name, text),
+        length if length <= LONG => put_fixed_attribute::<LONG>(group, name, text),
+        _ => group.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&variable(text)?),
     }
+}
+
+fn put_fixed_attribute<const N: usize>(group: &h5::Group, name: &str, text: &str) -> h5::Result<()> {
+    group.new_attr::<FixedUnicode<N>>().create(name)?.write_scalar(&fixed::<N>(text)?)
+}
+
+fn variable(text: &str) -> h5::Result<VarLenUnicode> {
+    text.parse().map_err(|_| h5::Error::from("a text holds a zero byte"))
 }
 
 fn fixed<const N: usize>(text: &str) -> h5::Result<FixedUnicode<N>> {

@@ -95,12 +95,12 @@ fn texts_of_each_length_come_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mesh.h5");
     let mut mesh = dgmpm::rectangle([2.0, 1.0], [2, 1]).unwrap();
-    for length in [0, 1, 63, 64, 65, 512, 513, 4096] {
+    for length in [0, 1, 63, 64, 65, 512, 513, 4096, 4097, 20_000] {
         mesh.groups[0] = "é".repeat(length / 2) + &"a".repeat(length % 2);
         mesh_file::write_mesh(&path, &mesh).unwrap();
         assert_eq!(mesh_file::read_mesh(&path).unwrap(), mesh, "{length}");
     }
-    mesh.groups[0] = "a".repeat(4097);
+    mesh.groups[0] = "a\0b".to_owned();
     assert_eq!(mesh_file::write_mesh(&path, &mesh).unwrap_err().exit_code(), 5);
     assert_eq!(hdf5::peek_attribute(&path, "format").as_deref(), Some("dgmpm mesh"));
 }
