@@ -29,8 +29,10 @@ pub fn run(args: &Args) -> Result<()> {
     args.threads.map_or(Ok(()), start_threads)?;
     let kernel = args.kernel.as_deref().map(|name| threads::kernel(Some(name))).transpose()?;
     let folder = Folder::new(&args.run);
-    let newest = Newest::read(&folder)?;
+    // A folder without a run is not locked, which would make it; and another run may have gone on until the lock was had.
+    Newest::read(&folder)?;
     let _lock = folder.lock()?;
+    let newest = Newest::read(&folder)?;
     newest.damaged.iter().for_each(warn);
     let ((time, step), path) = (newest.at(), newest.path.clone());
     let problem = newest.problem(&folder, &args.sets, kernel)?;
