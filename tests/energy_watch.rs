@@ -142,8 +142,12 @@ fn books_go_on_over_a_regrid_and_begin_anew_at_a_restart() {
         let snapshot =
             snapshots.map(|entry| entry.unwrap().path()).find(|path| path.extension().is_some_and(|e| e == "h5"));
         let from = format!("initial={{snapshot=\"{}\"}}", snapshot.unwrap().display());
-        // The grid of the snapshot is that of the first regrid.
+        // The grid of the snapshot is that of the first regrid, and so are its points.
+        let files = std::fs::read_dir(outcome.path()).unwrap().map(|entry| entry.unwrap().path());
+        let cloud = files.filter(|path| path.to_str().unwrap().contains("/cloud_")).min();
+        let cloud = cloud.map_or("cloud={}".to_owned(), |path| format!("cloud={{path=\"{}\"}}", path.display()));
         let sets = [
+            &cloud,
             &format!("scheme.method={method}"),
             &from,
             "regrid=[]",

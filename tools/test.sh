@@ -14,5 +14,7 @@ else
 fi
 
 export DGMPM_PYTHON=$PWD/.venv/bin/python DGMPM_REQUIRE_PYTHON=1
-cargo test --release
+# Examples are compiled by clippy, in CI and for who changes them.
+cargo test --release --lib --bins --tests
+cargo test --release --doc
 "$DGMPM_PYTHON" -m pytest -q tests/python

@@ -40,7 +40,8 @@ proptest! {
     #[test]
     fn contact_pushes_and_never_makes_energy(at in meeting(), friction in 0.0..2.0f64) {
         let t = Sliding { friction }.traction(&at, &mut []);
-        prop_assert!(dot(t, at.normal) <= 0.0);
+        // Friction from the push of an overlap alone leaves rounding along the normal.
+        prop_assert!(dot(t, at.normal) <= 1e-15);
         let pressure = Sliding { friction }.push(&at) - dot(t, at.normal);
         prop_assert!(dot(t, tangent(at.normal)).abs() <= friction * pressure + 1e-15);
         let [one, two] = stars(&at, t);

@@ -13,7 +13,7 @@ use hdf5_metno::LinkType;
 use hdf5_metno::plist::dataset_create::Layout;
 use hdf5_metno::types::{FixedUnicode, FloatSize, TypeDescriptor, VarLenAscii, VarLenUnicode};
 
-use super::pending::Pending;
+use super::pending::{Pending, check_folder};
 use super::regular;
 use super::seal::{self, Seal};
 use crate::error::{Error, Place, Result};
@@ -60,12 +60,17 @@ pub enum Kept {
 
 /// Creates a file by `fill`, with a seal that shows later damage. The file appears whole, or not at all.
 pub fn create_sealed(path: &Path, kept: Kept, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<()> {
-    let pending = fill_pending(path, fill)?;
-    seal::put(pending.path()).map_err(|e| Error::output(path, e))?;
-    match kept {
-        Kept::Named => pending.commit(),
-        Kept::OnDisk => pending.commit_to_disk(),
-    }
+    let write = || {
+        let pending = fill_pending(path, fill)?;
+        seal::put(pending.path()).map_err(|e| Error::output(path, e))?;
+        match kept {
+            Kept::Named => pending.commit(),
+            Kept::OnDisk => pending.commit_to_disk(),
+        }
+    };
+    // A folder that went away while the file was written is the reason of whatever failed.
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    write().or_else(|why| folder.map_or(Ok(()), check_folder).and(Err(why)))
 }
 
 fn fill_pending(path: &Path, fill: impl FnOnce(&h5::File) -> h5::Result<()>) -> Result<Pending> {

@@ -9,7 +9,11 @@ use std::time::{Duration, Instant};
 const LONG: &str = "run case.toml --out r --threads 1 --set time.end=1e3 --set regrid=[] --set output=[{kind=\"ledger\"}] --set quantity=[]";
 
 fn start(bench: &Bench, arguments: &str) -> Child {
-    bench.command(arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
+    // Under `nohup`, and in the background of a script, programs are started with some of these signals ignored, and it would stay so.
+    let mut command = Command::new("env");
+    command.args(["--default-signal=INT,TERM,HUP,USR1", env!("CARGO_BIN_EXE_dgmpm")]);
+    command.args(arguments.split_whitespace()).current_dir(bench.path("."));
+    command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
 /// Waits until something holds; two cores that others use too.
@@ -39,7 +43,15 @@ fn send(child: &Child, signal: &str) {
 }
 
 /// The message of a process that ended with a code.
-fn ended(child: Child, code: i32) -> String {
+fn ended(mut child: Child, code: i32) -> String {
+    // What it says until its end is less than a pipe holds.
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > Duration::from_secs(60) {
+            child.kill().unwrap();
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
     let output = child.wait_with_output().unwrap();
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(code), "{errors}");
