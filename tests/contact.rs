@@ -167,7 +167,7 @@ fn discs_that_meet_obliquely_keep_momentum_and_never_gain_energy() {
         let rows = outcome.ledger().column("angular_momentum");
         let change = (rows[rows.len() - 1] - rows[0]) / rows[0];
         assert!(change.abs() < 5e-3, "{name}: {change}");
-        // On 16 cells across a disc the impact loses 10 % at S2, 14 % with friction, 3 % at S3, 4 % where the grid is refined in it.
+        // On 80 cells a disc the impact loses 10 % at S2, 14 % with friction, 3 % at S3, 4 % where the grid is refined in it.
         assert!(outcome.number("total_energy_ratio") > 0.85, "{name}");
     }
 }
