@@ -138,6 +138,8 @@ fn what_the_start_lacks_for_a_quantity_is_found_before_results_change() {
     let out = folder.path().join("out");
     std::fs::create_dir(&out).unwrap();
     std::fs::write(out.join("summary.json"), "old").unwrap();
+    // The list of the files of the run: others are never replaced.
+    std::fs::write(out.join(".dgmpm"), "summary.json\n").unwrap();
     for (table, words) in [
         (r#"{name="a",kind="force",group="left"}"#, "it is periodic"),
         (r#"{name="a",kind="overshoot"}"#, "give `range`"),
