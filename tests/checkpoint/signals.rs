@@ -10,7 +10,7 @@ const LONG: &str = "run case.toml --out r --threads 1 --set time.end=1e3 --set r
 
 fn start(bench: &Bench, arguments: &str) -> Child {
     // Under `nohup`, and in the background of a script, programs are started with some of these signals ignored, and it would stay so.
-    let mut command = Command::new("env");
+    let mut command = Command::new("/usr/bin/env");
     command.args(["--default-signal=INT,TERM,HUP,USR1", env!("CARGO_BIN_EXE_dgmpm")]);
     command.args(arguments.split_whitespace()).current_dir(bench.path("."));
     command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()

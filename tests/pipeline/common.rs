@@ -81,7 +81,7 @@ impl Bench {
     /// The program with arguments, separated by blanks, to be run in the folder.
     pub fn command(&self, arguments: &str) -> Command {
         // Under `nohup`, and in the background of a script, programs are started with some of these signals ignored, and it would stay so.
-        let mut command = Command::new("env");
+        let mut command = Command::new("/usr/bin/env");
         command.args(["--default-signal=INT,TERM,HUP", env!("CARGO_BIN_EXE_dgmpm")]);
         command.current_dir(self.folder.path()).args(arguments.split_whitespace());
         // Tests start programs side by side: one that is just being started holds the files that this process had open, with their locks.
