@@ -25,8 +25,8 @@ pub struct Sliding {
     pub friction: f64,
 }
 
-/// k over the stiffness of the cells of both sides in a row. With 2 an overlap has gone after about one passage of a wave through a cell,
-/// and the stable step is that without contact (degrees 1 to 6).
+/// k over the stiffness of the cells of both sides in a row. With 2 overlaps of impacts stay below .35 of a cell but for soft
+/// bodies at half of their wave speed, and no step of degree 1 to 3 was seen to grow; larger degrees and other values were not tried.
 const PUSH: f64 = 2.0;
 
 /// The part of the push that sides get which part already.
