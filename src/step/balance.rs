@@ -47,8 +47,8 @@ pub struct Balance {
     pub boundary_work: f64,
     /// int rho0 b.v over body and time.
     pub source_work: f64,
-    /// The same over faces that act on each other: what contact, friction and cohesive edges give to the body, below 0 but for what they
-    /// had stored.
+    /// The same over faces that act on each other: what contact, friction and cohesive edges give to the body. Of either sign where
+    /// overlaps are pushed back: the push counts here with v*, and the rest of its power in the dissipation at the boundary.
     pub contact_work: f64,
     /// The share that faces between cells have in the loss of the steps.
     pub flux_dissipation: f64,
