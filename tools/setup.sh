@@ -16,7 +16,7 @@ packages+=(valgrind)
 if command -v dpkg-query >/dev/null; then
     tools/apt.sh "${packages[@]}"
 else
-    echo "not a Debian system: HDF5 (>= 1.10) with headers, pkg-config and OpenGL libraries are taken as given" >&2
+    echo "not a Debian system: HDF5 (>= 1.10.7, not 1.12.0) with headers, pkg-config and OpenGL libraries are taken as given" >&2
 fi
 
 stamp=.venv/requirements.installed

@@ -94,7 +94,15 @@ pub fn reason(error: &h5::Error) -> String {
 
 /// Opens a new file for writing, in the format that every HDF5 since 1.8 reads.
 pub fn open_new(path: &Path) -> h5::Result<h5::File> {
-    h5::File::create(path)
+    without_locks().create(path)
+}
+
+/// The files of this program appear whole, by rename, and are not changed after that: a lock has nothing to guard. It would do
+/// harm: network file systems often have none, and a process that another thread starts holds it beyond the end of the writing.
+fn without_locks() -> h5::FileBuilder {
+    let mut options = h5::File::with_options();
+    options.with_fapl(|access| access.file_locking(false));
+    options
 }
 
 /// Writes one dataset (row-major, `shape` may be empty for a single number), packed where that pays.
@@ -174,7 +182,7 @@ pub fn peek_attribute(path: &Path, name: &str) -> Option<String> {
     regular::about(path).ok()?;
     // A file that may be damaged must not reach the HDF5 library.
     seal::check(path).ok().filter(|seal| *seal == Seal::Whole)?;
-    let file = h5::File::open(path).ok()?;
+    let file = without_locks().open(path).ok()?;
     read_attribute(&file, name, true).ok()
 }
 
@@ -220,7 +228,7 @@ impl Reader {
             let remedy = format!("{remedy}, or give --trust if you know that its writer means no harm");
             return Err(Error::at(place, what, remedy));
         }
-        let file = h5::File::open(path).map_err(|e| fail(format!("not a whole HDF5 file: {}", reason(&e))))?;
+        let file = without_locks().open(path).map_err(|e| fail(format!("not a whole HDF5 file: {}", reason(&e))))?;
         Ok(Self { file, place, bytes: about.len(), sealed: seal == Seal::Whole, remedy: remedy.to_owned() })
     }
 
@@ -338,4 +346,21 @@ pub fn begins_as_hdf5(path: &Path) -> bool {
     let mut start = Vec::new();
     let read = std::fs::File::open(path).and_then(|file| file.take(signature.len() as u64).read_to_end(&mut start));
     read.is_ok() && start == signature
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As a process that another thread of a run has just started does: it shares the file until its own program begins.
+    #[test]
+    fn a_file_on_which_another_holds_a_lock_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("part.h5");
+        create_sealed(&path, Kept::Named, |file| put(file, "numbers", &[2], &[1.0, 2.0])).unwrap();
+        let held = std::fs::File::open(&path).unwrap();
+        held.lock().unwrap();
+        assert_eq!(Reader::open(&path, "write it again").unwrap().names().unwrap(), ["numbers"]);
+        assert!(peek_attribute(&path, "absent").is_none());
+    }
 }

@@ -41,6 +41,8 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
+        // Closing the file is not enough: a process that another thread is just starting shares it until its program begins.
+        let _ = self.file.unlock();
         // A run that ended before it wrote anything leaves nothing; a folder with files stays.
         if self.file.metadata().is_ok_and(|about| about.len() == 0) {
             let _ = std::fs::remove_file(self.root.join(LIST));
@@ -65,5 +67,15 @@ mod tests {
         std::fs::write(root.join(LIST), "ledger.csv\n").unwrap();
         drop(lock);
         assert!(root.join(LIST).exists() && Lock::take(&root).is_ok());
+    }
+
+    #[test]
+    fn a_process_that_shares_the_open_list_for_a_moment_does_not_keep_the_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let lock = Lock::take(folder.path()).unwrap();
+        let shared = lock.file.try_clone().unwrap();
+        drop(lock);
+        assert!(Lock::take(folder.path()).is_ok());
+        drop(shared);
     }
 }
