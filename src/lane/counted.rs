@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn each_operation_counts_once_in_the_slot_of_its_mark() {
-        let counts = count(|| Kernel::Counting.run(Mixed(F8::splat(2.0))));
+        let counts = count(|| Kernel::Counting.enter(Mixed(F8::splat(2.0))));
         let expected = Counts { additions: 2, multiplications: 1, fused: 1, divisions: 1, roots: 0 };
         assert_eq!(counts[3], expected);
         assert_eq!(counts[SLOTS - 1], Counts { roots: 1, ..Counts::ZERO });
@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn nothing_is_booked_by_a_thread_that_does_not_count() {
         let counts = count(|| {});
-        Kernel::Counting.run(Mixed(F8::splat(2.0)));
+        Kernel::Counting.enter(Mixed(F8::splat(2.0)));
         mark(3);
         assert_eq!((counts, BOOKED.get()), ([Counts::ZERO; SLOTS], [Counts::ZERO; SLOTS]));
     }
@@ -224,7 +224,7 @@ mod tests {
                 out
             }
         }
-        let of = |kernel: Kernel| kernel.run(Sum(F8::splat(1.7), F8([1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 9.0, 8.0])));
+        let of = |kernel: Kernel| kernel.enter(Sum(F8::splat(1.7), F8([1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 9.0, 8.0])));
         assert_eq!(of(Kernel::Counting), F8::splat(of(Kernel::Portable).0[0]));
     }
 }

@@ -124,7 +124,7 @@ mod tests {
             worst = worst.max(error);
         };
         for &(_, kernel) in Kernel::NAMES.iter().filter(|(_, kernel)| kernel.is_available()) {
-            let found = kernel.run(Apply(&packed, function));
+            let found = kernel.enter(Apply(&packed, function));
             for (x, found) in packed.iter().zip(&found) {
                 (0..8).for_each(|lane| see(x.0[lane], found.0[lane]));
             }

@@ -30,7 +30,7 @@ fn joined_numbers_are_the_end_of_one_and_the_start_of_the_other_on_every_path() 
     let all: Vec<F8> = (0..9).map(|k| F8(std::array::from_fn(|lane| (8 * k + lane) as f64))).collect();
     for r in 1..8 {
         for kernel in paths() {
-            for (k, out) in kernel.run(Join(&all, r)).iter().enumerate() {
+            for (k, out) in kernel.enter(Join(&all, r)).iter().enumerate() {
                 let both: Vec<f64> = all[5 + k].0.iter().chain(&all[1 + k].0).copied().collect();
                 assert_eq!(out.0, both[r..r + 8], "{kernel:?} {k} {r}");
             }
@@ -66,7 +66,7 @@ proptest! {
             let expected = F8(std::array::from_fn(|lane| {
                 all[if lanes >> lane & 1 == 1 { 1 } else { 2 }].0[usize::from(from[lane])]
             }));
-            prop_assert_eq!(kernel.run(Pick(&all, from, lanes)), [expected; 2]);
+            prop_assert_eq!(kernel.enter(Pick(&all, from, lanes)), [expected; 2]);
         }
     }
 }
@@ -95,9 +95,9 @@ proptest! {
     #[test]
     fn all_paths_agree_to_the_rounding_of_one_fused_multiplication(
         a in prop::array::uniform8(1e-3..1e3f64), b in prop::array::uniform8(1e-3..1e3f64)) {
-        let portable = Kernel::Portable.run(EveryOperation(F8(a), F8(b)));
+        let portable = Kernel::Portable.enter(EveryOperation(F8(a), F8(b)));
         for kernel in paths() {
-            let other = kernel.run(EveryOperation(F8(a), F8(b)));
+            let other = kernel.enter(EveryOperation(F8(a), F8(b)));
             for (p, w) in as_f64(&portable).iter().zip(as_f64(&other)) {
                 // Products reach 1e6 and may cancel: four roundings of 1e6 * 2^-52 = 2.3e-10.
                 prop_assert!((p - w).abs() <= 4.0 * 2.3e-10);

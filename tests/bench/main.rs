@@ -1,5 +1,7 @@
 //! `dgmpm bench`: its one line, its table, its refusals. Rates are not tested: machines are noisy.
 
+mod flops;
+
 use assert_cmd::Command;
 
 const UNSTRUCTURED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/square_unstructured.msh");
