@@ -105,9 +105,8 @@ fn deviation(operators: &Operators, numbers: &[F8], stride: usize) -> f64 {
         exact_sum(blocks.map(|(numbers, &count)| (0..count).map(|lane| of(numbers, lane)).sum()))
     };
     let area = sum(&|numbers, lane| numbers[AREA].0[lane]);
-    let mean: [f64; WATCHED] = std::array::from_fn(|k| {
-        sum(&|numbers, lane| numbers[AREA].0[lane] * numbers[MEANS + k].0[lane]) / area
-    });
+    let mean: [f64; WATCHED] =
+        std::array::from_fn(|k| sum(&|numbers, lane| numbers[AREA].0[lane] * numbers[MEANS + k].0[lane]) / area);
     let mut most = [0.0f64; LANES];
     for (numbers, &count) in numbers.chunks_exact(stride).zip(&operators.blocks.count) {
         for (lane, most) in most.iter_mut().enumerate().take(count) {
