@@ -84,6 +84,7 @@ mod format;
 #[allow(unsafe_code)]
 mod lane;
 mod words;
+mod sum;
 pub mod tensor;
 mod quadrature;
 mod basis;

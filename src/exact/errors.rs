@@ -7,6 +7,7 @@ use crate::quadrature::gauss_legendre;
 use crate::state::State;
 use crate::step::Law;
 use crate::step::Scheme;
+use crate::sum::exact_sum;
 
 /// Norms of an error e over the body, with |e| the Euclidean norm of its components in the plane.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
@@ -25,6 +26,16 @@ impl Norms {
         self.l1 += weight * square.sqrt();
         self.l2 += weight * square;
         self.linf = self.linf.max(square.sqrt());
+    }
+
+    /// Of sums over cells, those over all.
+    fn sum(cells: &[Sums], of: fn(&Errors) -> &Norms) -> Self {
+        let cells = cells.iter().map(|cell| of(&cell.errors));
+        Self {
+            l1: exact_sum(cells.clone().map(|norms| norms.l1)),
+            l2: exact_sum(cells.clone().map(|norms| norms.l2)),
+            linf: cells.map(|norms| norms.linf).fold(0.0, f64::max),
+        }
     }
 }
 
@@ -46,7 +57,30 @@ pub struct Errors {
     pub standard_l1: f64,
 }
 
+/// Sums over a cell: the fields of the norms before their roots and quotients.
+#[derive(Default)]
+struct Sums {
+    errors: Errors,
+    /// int |F_ex - 1|^2 + |v_ex|^2 / c_p^2 dX is in `errors.standard`; this is int s dX.
+    size_l1: f64,
+}
+
 impl Errors {
+    /// From sums over cells to norms, whatever the order of the cells.
+    fn of_cells(cells: &[Sums]) -> Self {
+        let sum = |of: fn(&Sums) -> f64| exact_sum(cells.iter().map(of));
+        let (standard_l1, size_l1) = (sum(|cell| cell.errors.standard_l1), sum(|cell| cell.size_l1));
+        let sums = Self {
+            deformation: Norms::sum(cells, |errors| &errors.deformation),
+            velocity: Norms::sum(cells, |errors| &errors.velocity),
+            piola: Norms::sum(cells, |errors| &errors.piola),
+            distance: sum(|cell| cell.errors.distance),
+            standard: sum(|cell| cell.errors.standard),
+            standard_l1: if size_l1 > 0.0 { standard_l1 / size_l1 } else { standard_l1 },
+        };
+        sums.rooted()
+    }
+
     /// From sums of squares to norms.
     fn rooted(mut self) -> Self {
         for norms in [&mut self.deformation, &mut self.velocity, &mut self.piola] {
@@ -91,8 +125,9 @@ pub fn compare<'a>(
     let (points, weights) = gauss_legendre(order);
     let xi: Vec<[f64; 2]> = points.iter().flat_map(|&a| points.iter().map(move |&b| [a, b])).collect();
     let weights: Vec<f64> = weights.iter().flat_map(|a| weights.iter().map(move |b| a * b)).collect();
-    let (mut sum, mut size_l1) = (Errors::default(), 0.0);
-    for cell in 0..mesh.cells.len() {
+    let of_cell = |cell: usize| {
+        let mut sums = Sums::default();
+        let sum = &mut sums.errors;
         let (corners, law) = (mesh.corners(cell), law(cell));
         let slowness = 1.0 / law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0];
         for (&xi, weight) in xi.iter().zip(&weights) {
@@ -110,13 +145,11 @@ pub fn compare<'a>(
             sum.distance += weight * error;
             sum.standard += weight * size;
             sum.standard_l1 += weight * error.sqrt();
-            size_l1 += weight * size.sqrt();
+            sums.size_l1 += weight * size.sqrt();
         }
-    }
-    if size_l1 > 0.0 {
-        sum.standard_l1 /= size_l1;
-    }
-    sum.rooted()
+        sums
+    };
+    Errors::of_cells(&(0..mesh.cells.len()).map(of_cell).collect::<Vec<_>>())
 }
 
 /// |f|^2 + |v|^2 / c_p^2.

@@ -8,17 +8,33 @@ use super::hdf5;
 use super::seal::{self, Seal};
 use super::store::{ArrayRef, Format, Store, write_arrays};
 use crate::error::Result;
-use crate::mesh::Mesh;
+use crate::mesh::{FACES, Link, Mesh};
 use crate::operators::stored::Flat;
 use crate::operators::{Blocks, Certificate, Needs, Sampling, Stored};
 
 /// The format of the stored matrices. Version 3: cells of a block follow each other, see [`Blocks`]. Version 4 adds the
-/// certificates of the cells, for people who read the file (they are not read back).
+/// certificates of the cells, for people who read the file (they are not read back). Version 5 has the blocks, and the complements of
+/// congruent cells no longer depend on which of them comes first.
 pub const FORMAT: Format =
-    Format { name: "dgmpm operators", version: 4, remedy: "write it again by `dgmpm preprocess`" };
+    Format { name: "dgmpm operators", version: 5, remedy: "write it again by `dgmpm preprocess`" };
 
 /// The first version whose matrices are those of today. Matrices of older files are built again.
-const MATRICES: u32 = 3;
+const MATRICES: u32 = 5;
+
+/// The cells of all blocks, one after the other.
+const BLOCK_CELLS: &str = "block_cells";
+
+/// The number of cells of each block.
+const BLOCK_SIZES: &str = "block_sizes";
+
+/// What blocks consist of.
+#[derive(Debug, Clone, Copy)]
+pub struct Parts<'a> {
+    /// The law of each cell.
+    pub material: &'a [usize],
+    /// What is beyond the faces of each cell.
+    pub links: &'a [[Link; FACES]],
+}
 
 /// The key: a hash of the mesh, the pairs of periodic groups, the cloud (or nodes), the degree, the law of each cell,
 /// and the list of matrices that the run needs.
@@ -35,11 +51,15 @@ pub fn key(mesh: &Mesh, periodic: &[[usize; 2]], material: &[usize], needs: &Nee
     digest.count(usize::from(needs.curl_free)).finish()
 }
 
-/// Writes the matrices under their key, with the certificates of the cells.
-pub fn write(path: &Path, key: &str, stored: &Stored, certificates: &[Certificate]) -> Result<()> {
+/// Writes blocks and matrices under their key, with the certificates of the cells.
+pub fn write(path: &Path, key: &str, blocks: &Blocks, stored: &Stored, certificates: &[Certificate]) -> Result<()> {
     let parts =
         [("points", stored.points.as_ref().map(Flat::of)), ("curl_free", stored.curl_free.as_ref().map(Flat::of))];
-    let mut arrays = Vec::new();
+    let cells = blocks.list();
+    let mut arrays = vec![
+        (BLOCK_CELLS.to_owned(), cells.len(), ArrayRef::Index(&cells)),
+        (BLOCK_SIZES.to_owned(), blocks.len(), ArrayRef::Index(&blocks.count)),
+    ];
     for (name, flat) in &parts {
         let Some(flat) = flat else { continue };
         arrays.push((format!("{name}_share"), flat.share.len(), ArrayRef::I64(&flat.share)));
@@ -60,11 +80,11 @@ pub fn may_replace(path: &Path) -> bool {
     matches!(seal::check(path), Ok(Seal::Broken)) || ours()
 }
 
-/// Reads the matrices if they have this key; `None` if the file is missing or was built from other input.
+/// Reads blocks and matrices if they have this key; `None` if the file is missing or was built from other input.
 ///
 /// # Errors
 /// A file that is damaged.
-pub fn read(path: &Path, key: &str, blocks: &Blocks, needs: &Needs) -> Result<Option<Stored>> {
+pub fn read(path: &Path, key: &str, parts: Parts, needs: &Needs) -> Result<Option<(Blocks, Stored)>> {
     if !path.exists() {
         return Ok(None);
     }
@@ -74,6 +94,9 @@ pub fn read(path: &Path, key: &str, blocks: &Blocks, needs: &Needs) -> Result<Op
     }
     let nodes = (needs.degree + 1).pow(2);
     let misfit = |store: &Store, name: &str| store.error(format!("the arrays of `{name}` do not fit together"));
+    let (cells, sizes) = (store.indices(BLOCK_CELLS, &[])?, store.indices(BLOCK_SIZES, &[])?);
+    let blocks = Blocks::stored(parts.material, parts.links, &cells, &sizes);
+    let blocks = blocks.ok_or_else(|| store.error("the blocks do not have each cell once"))?;
     let mut out = Stored { points: None, curl_free: None };
     if needs.sampling.is_some() {
         let pool = flat(&mut store, "points")?.pool(blocks.len(), nodes);
@@ -83,7 +106,7 @@ pub fn read(path: &Path, key: &str, blocks: &Blocks, needs: &Needs) -> Result<Op
         let pool = flat(&mut store, "curl_free")?.pool(blocks.len(), nodes);
         out.curl_free = Some(pool.ok_or_else(|| misfit(&store, "curl_free"))?);
     }
-    Ok(Some(out))
+    Ok(Some((blocks, out)))
 }
 
 fn flat(store: &mut Store, name: &str) -> Result<Flat> {
@@ -111,7 +134,14 @@ mod tests {
     struct Case {
         mesh: Mesh,
         cloud: Cloud,
+        links: Vec<[Link; FACES]>,
         blocks: Blocks,
+    }
+
+    impl Case {
+        fn parts(&self) -> Parts<'_> {
+            Parts { material: &MATERIAL, links: &self.links }
+        }
     }
 
     const MATERIAL: [usize; 12] = [0; 12];
@@ -119,8 +149,8 @@ mod tests {
     /// 12 cells: two blocks, the second padded. A jittered cloud has matrices of its own in each cell.
     fn case(layout: Layout) -> Case {
         let mesh = rectangle([4.0, 3.0], [4, 3]).unwrap();
-        let blocks = Blocks::new(&MATERIAL, &links(&mesh).unwrap());
-        Case { cloud: seed(layout, 3, 12), mesh, blocks }
+        let links = links(&mesh).unwrap();
+        Case { cloud: seed(layout, 3, 12), mesh, blocks: Blocks::new(&MATERIAL, &links), links }
     }
 
     fn needs(cloud: &Cloud) -> Needs<'_> {
@@ -144,10 +174,10 @@ mod tests {
             let points = stored.points.as_ref().unwrap();
             assert_eq!((points.shared.len(), points.own.len()), if layout == JITTER { (0, 2) } else { (1, 0) });
             let key = key(&case.mesh, &[], &MATERIAL, &needs);
-            write(&path, &key, &stored, &[]).unwrap();
+            write(&path, &key, &case.blocks, &stored, &[]).unwrap();
             // Every number is finite, so that equality is that of bits but for the sign of 0.
-            let back = read(&path, &key, &case.blocks, &needs).unwrap().unwrap();
-            assert_eq!(back, stored);
+            let (blocks, back) = read(&path, &key, case.parts(), &needs).unwrap().unwrap();
+            assert_eq!((&blocks, &back), (&case.blocks, &stored));
             let bits = |s: &Stored| {
                 let flat = Flat::of(s.points.as_ref().unwrap());
                 flat.own.iter().chain(&flat.shared).map(|v| v.to_bits()).collect::<Vec<_>>()
@@ -163,12 +193,12 @@ mod tests {
         let case = case(Layout::Paper);
         let needs = needs(&case.cloud);
         let certificates = certify(&case.mesh, &Line::new(2), Sampling::Cloud(&case.cloud)).unwrap();
-        write(&path, "a", &build(&case, &needs), &certificates).unwrap();
+        write(&path, "a", &case.blocks, &build(&case, &needs), &certificates).unwrap();
         let mut store = Store::read(&path, FORMAT).unwrap();
         assert_eq!(store.indices("cell_points", &[]).unwrap(), [9; 12]);
         // The layout of the paper on a square cell: 26.6 (design section 2).
         assert!(store.reals("cell_face_lebesgue", &[]).unwrap().iter().all(|l| (l - 26.6).abs() < 0.01));
-        assert!(read(&path, "a", &case.blocks, &needs).unwrap().is_some());
+        assert!(read(&path, "a", case.parts(), &needs).unwrap().is_some());
     }
 
     #[test]
@@ -202,9 +232,9 @@ mod tests {
         let path = folder.path().join("operators.h5");
         let case = case(Layout::Paper);
         let needs = needs(&case.cloud);
-        let read = |key: &str| read(&path, key, &case.blocks, &needs);
+        let read = |key: &str| read(&path, key, case.parts(), &needs);
         assert_eq!(read("a").unwrap(), None);
-        write(&path, "a", &build(&case, &needs), &[]).unwrap();
+        write(&path, "a", &case.blocks, &build(&case, &needs), &[]).unwrap();
         assert_eq!(read("b").unwrap(), None);
         assert!(read("a").unwrap().is_some() && may_replace(&path));
         let mut bytes = std::fs::read(&path).unwrap();
@@ -225,8 +255,26 @@ mod tests {
         let needs = needs(&case.cloud);
         let mut stored = build(&case, &needs);
         stored.points.as_mut().unwrap().share.pop();
-        write(&path, "a", &stored, &[]).unwrap();
-        let message = read(&path, "a", &case.blocks, &needs).unwrap_err().to_string();
+        write(&path, "a", &case.blocks, &stored, &[]).unwrap();
+        let message = read(&path, "a", case.parts(), &needs).unwrap_err().to_string();
         assert!(message.contains("do not fit together"), "{message}");
+    }
+
+    #[test]
+    fn blocks_that_lack_a_cell_or_mix_laws_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("operators.h5");
+        let case = case(Layout::Paper);
+        let needs = needs(&case.cloud);
+        let stored = build(&case, &needs);
+        let mut twice = case.blocks.clone();
+        twice.cells[0][0] = twice.cells[0][1];
+        write(&path, "a", &twice, &stored, &[]).unwrap();
+        let message = read(&path, "a", case.parts(), &needs).unwrap_err().to_string();
+        assert!(message.contains("each cell once"), "{message}");
+        let mut law = MATERIAL;
+        law[case.blocks.cells[0][3]] = 1;
+        write(&path, "a", &case.blocks, &stored, &[]).unwrap();
+        assert!(read(&path, "a", Parts { material: &law, links: &case.links }, &needs).is_err());
     }
 }

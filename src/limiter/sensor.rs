@@ -7,6 +7,7 @@ use crate::mesh::FACES;
 use crate::operators::{Neighbour, Operators, Side, with_nodes};
 use crate::state::UNKNOWNS;
 use crate::step::{Made, Notes};
+use crate::sum::exact_sum;
 use crate::tensor;
 use rayon::prelude::*;
 
@@ -97,20 +98,15 @@ fn spread(operators: &Operators, marked: &mut [u8], numbers: &mut [F8], stride: 
     }
 }
 
-/// A: the largest deviation of a cell mean from the mean of the body. Lanes are added last, in a fixed order.
+/// A: the largest deviation of a cell mean from the mean of the body, whose sums over the blocks are exact.
 fn deviation(operators: &Operators, numbers: &[F8], stride: usize) -> f64 {
-    let (mut sums, mut areas) = ([[0.0; LANES]; WATCHED], [0.0; LANES]);
-    for (numbers, &count) in numbers.chunks_exact(stride).zip(&operators.blocks.count) {
-        for lane in 0..count {
-            let area = numbers[AREA].0[lane];
-            areas[lane] += area;
-            for (sum, mean) in sums.iter_mut().zip(&numbers[MEANS..]) {
-                sum[lane] += area * mean.0[lane];
-            }
-        }
-    }
-    let area: f64 = areas.iter().sum();
-    let mean = sums.map(|sum| sum.iter().sum::<f64>() / area);
+    let sum = |of: &dyn Fn(&[F8], usize) -> f64| {
+        let blocks = numbers.chunks_exact(stride).zip(&operators.blocks.count);
+        exact_sum(blocks.map(|(numbers, &count)| (0..count).map(|lane| of(numbers, lane)).sum()))
+    };
+    let area = sum(&|numbers, lane| numbers[AREA].0[lane]);
+    let mean: [f64; WATCHED] =
+        std::array::from_fn(|k| sum(&|numbers, lane| numbers[AREA].0[lane] * numbers[MEANS + k].0[lane]) / area);
     let mut most = [0.0f64; LANES];
     for (numbers, &count) in numbers.chunks_exact(stride).zip(&operators.blocks.count) {
         for (lane, most) in most.iter_mut().enumerate().take(count) {

@@ -10,7 +10,9 @@ use crate::mesh::{FACES, Link};
 /// A block holds eight cells of one law that follow each other in an order: that of the mesh or that of Cuthill and
 /// McKee, whichever has neighbours nearer to each other. The blocks follow each other in such an order too. So the data
 /// that a step has begun and not finished belongs to a small part of the mesh. Everywhere else cells keep their
-/// numbers, and the bits of a run do not depend on the order.
+/// numbers, and the bits of a run do not depend on the order of the blocks: sums over them are exact
+/// ([`crate::sum`]). They depend on which cells share a block, since a block of congruent cells takes shorter ways than a mixed
+/// one: so the blocks are those of the whole mesh and are stored with the operators.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Blocks {
     /// The cell of each lane (padding repeats the last real one).
@@ -58,6 +60,30 @@ impl Blocks {
         };
         let graph: Vec<Vec<usize>> = lists.iter().enumerate().map(around).collect();
         Self::of_lists(material, links, &lists, &order::reduce_bandwidth(&graph))
+    }
+
+    /// The blocks that consist of `sizes[k]` cells each, the next ones of `cells`; `None` if these are not all cells, each once, in
+    /// blocks of one law.
+    pub fn stored(material: &[usize], links: &[[Link; FACES]], cells: &[usize], sizes: &[usize]) -> Option<Self> {
+        let mut seen = vec![false; material.len()];
+        let once = |&cell: &usize| seen.get_mut(cell).is_some_and(|seen| !std::mem::replace(seen, true));
+        if cells.len() != material.len() || !cells.iter().all(once) {
+            return None;
+        }
+        let (mut lists, mut rest) = (Vec::with_capacity(sizes.len()), cells);
+        for &size in sizes {
+            let (list, behind) = rest.split_at_checked(size).filter(|_| (1..=LANES).contains(&size))?;
+            list.iter().all(|&cell| material[cell] == material[list[0]]).then_some(())?;
+            lists.push(list);
+            rest = behind;
+        }
+        let order: Vec<usize> = (0..lists.len()).collect();
+        rest.is_empty().then(|| Self::of_lists(material, links, &lists, &order))
+    }
+
+    /// The cells of all blocks, one after the other, without padding.
+    pub fn list(&self) -> Vec<usize> {
+        self.cells.iter().zip(&self.count).flat_map(|(cells, &count)| cells[..count].iter().copied()).collect()
     }
 
     /// The distance of a block from its farthest neighbour, the median over all blocks, as in [`order::reduce_bandwidth`].

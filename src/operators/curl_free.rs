@@ -8,6 +8,7 @@ use crate::lane::{F8, LANES, prefetch};
 use crate::mesh::{Mesh, map};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use std::cmp::Ordering;
 
 /// Pivots below this share of the largest count as rounding. The set of columns is rank-deficient by construction,
 /// with ranks 5, 10, 17 of 8, 18, 32 on affine cells and 6, 12, 20 on others (N = 1, 2, 3).
@@ -60,22 +61,24 @@ impl CurlFree {
     /// From the matrices of all blocks.
     pub fn new(pool: CurlPool, mesh: &Mesh, blocks: &Blocks, line: &Line) -> Self {
         let curl = Curl::new(line);
-        let masses = |cell: usize| (0..line.m * line.m).map(|a| mass(&mesh.corners(cell), line, a)).collect::<Vec<_>>();
-        let (mut example, mut mixed) = (vec![0; pool.shared.len()], vec![[0; LANES]; pool.own.len()]);
+        let masses = |corners: &[[f64; 2]; 4]| (0..line.m * line.m).map(|a| mass(corners, line, a)).collect::<Vec<_>>();
+        let congruent = Congruent::of(mesh);
+        let (mut example, mut mixed) = (vec![[[0.0; 2]; 4]; pool.shared.len()], vec![[0; LANES]; pool.own.len()]);
         for (share, cells) in pool.share.iter().zip(&blocks.cells) {
             match *share {
-                Share::Shared(k) => example[k] = cells[0],
+                Share::Shared(k) => example[k] = congruent.examples[congruent.class[cells[0]]],
                 Share::Own(k) => mixed[k] = *cells,
             }
         }
-        let class = |(c, cell): (Matrix<f64>, usize)| match Halves::of(&c, &masses(cell)) {
+        let class = |(c, corners): (Matrix<f64>, [[f64; 2]; 4])| match Halves::of(&c, &masses(&corners)) {
             Some(halves) => Class::Halves(halves),
             None => Class::Whole(c),
         };
         let core = |(c, cells): (&Matrix<F8>, &[usize; LANES])| {
             let lanes: [Vec<f64>; LANES] = std::array::from_fn(|lane| {
                 let c = Matrix::new(c.rows, c.columns, c.data.iter().map(|entry| entry.0[lane]).collect());
-                curl.core(&c, &mesh.corners(cells[lane]), line, &masses(cells[lane]))
+                let corners = mesh.corners(cells[lane]);
+                curl.core(&c, &corners, line, &masses(&corners))
             });
             (0..lanes[0].len()).map(|e| F8(lanes.each_ref().map(|lane| lane[e]))).collect()
         };
@@ -86,14 +89,8 @@ impl CurlFree {
 
     /// Builds C for all blocks.
     pub fn matrices(mesh: &Mesh, blocks: &Blocks, line: &Line) -> CurlPool {
-        let size = mesh.nodes.iter().flatten().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
-        // Cells whose edges agree to 1e-12 of the mesh are congruent up to rounding of the node coordinates.
-        let key = |cell: usize| {
-            let c = mesh.corners(cell);
-            [1, 2, 3].map(|k| [0, 1].map(|i| ((c[k][i] - c[0][i]) / (size * 1e-12)).round() as i64))
-        };
-        let (class, examples) = classes(mesh.cells.len(), key);
-        let all: Vec<_> = examples.par_iter().map(|&cell| complement(&mesh.corners(cell), line)).collect();
+        let Congruent { class, examples } = Congruent::of(mesh);
+        let all: Vec<_> = examples.par_iter().map(|corners| complement(corners, line)).collect();
         let columns = all.iter().map(|c| c.columns).max().unwrap_or(0);
         Pool::new(&blocks.cells, &class, all, |lanes| {
             let padded = lanes.map(|c| widen(c, columns));
@@ -134,6 +131,37 @@ impl CurlFree {
         };
         self.pool.shared.iter().map(class).sum::<usize>()
             + self.pool.own.iter().map(|core| core.len() * 64).sum::<usize>()
+    }
+}
+
+/// Classes of cells that are congruent up to the rounding of the coordinates of their nodes.
+struct Congruent {
+    /// Of each cell.
+    class: Vec<usize>,
+    /// The corners that stand for each class, the first one at the origin.
+    examples: Vec<[[f64; 2]; 4]>,
+}
+
+impl Congruent {
+    /// Cells are congruent whose edges agree to 1e-12 of the size of the mesh. The least of a class, number by number, stands for it:
+    /// which one that is does not depend on the order of the cells.
+    fn of(mesh: &Mesh) -> Self {
+        let size = mesh.nodes.iter().flatten().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
+        let edges = |cell: usize| {
+            let c = mesh.corners(cell);
+            c.map(|x| [0, 1].map(|i| x[i] - c[0][i]))
+        };
+        let key = |cell: usize| edges(cell).map(|x| x.map(|x| (x / (size * 1e-12)).round() as i64));
+        let (class, first) = classes(mesh.cells.len(), key);
+        let mut examples: Vec<_> = first.into_iter().map(edges).collect();
+        for (cell, &class) in class.iter().enumerate() {
+            let (least, own) = (&mut examples[class], edges(cell));
+            let pairs = own.as_flattened().iter().zip(least.as_flattened());
+            if pairs.map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne()).is_some_and(Ordering::is_lt) {
+                *least = own;
+            }
+        }
+        Self { class, examples }
     }
 }
 
@@ -310,6 +338,7 @@ mod tests {
     fn every_form_of_the_projection_is_that_of_the_complement() {
         for kind in 0..3 {
             let mesh = mesh(kind);
+            let congruent = Congruent::of(&mesh);
             let mut worst = 0.0f64;
             for degree in 1..=6 {
                 let line = Line::new(degree);
@@ -326,10 +355,10 @@ mod tests {
                     let masses: Vec<f64> = geometry.masses(&line, block, lane).collect();
                     let mut f: Vec<f64> = (0..4 * masses.len()).map(|k| ((7 * k + cell) as f64).sin()).collect();
                     let mut expected = f.clone();
-                    // Equal cells have the complement of the first. (At S6 that of others differs by 1e-9: the smallest of the
+                    // Equal cells have the complement of one. (At S6 that of others differs by 1e-9: the smallest of the
                     // pivots that count are 1e-7 of the largest.)
-                    let example = if kind == 1 { 0 } else { cell };
-                    project(&complement(&mesh.corners(example), &line), &masses, &mut expected);
+                    let example = &congruent.examples[congruent.class[cell]];
+                    project(&complement(example, &line), &masses, &mut expected);
                     all.project(&line, &geometry, [block, lane], &mut f);
                     for (f, expected) in f.iter().zip(&expected) {
                         worst = worst.max((f - expected).abs());

@@ -5,6 +5,7 @@ use super::moved::{Moved, scale};
 use crate::format::count;
 use crate::state::UNKNOWNS;
 use crate::step::Totals;
+use crate::sum::ExactSum;
 use std::time::Instant;
 
 /// Names of the phases of a regrid, in order; `regrid.csv` has their seconds.
@@ -59,16 +60,17 @@ impl Outcome<'_> {
     fn error(&self) -> f64 {
         let (scheme, u) = (&self.new.scheme, &self.new.transfer.u);
         let (n, scale) = (scheme.operators.nodes(), scale(scheme));
-        let mut sum = 0.0;
+        let mut sum = ExactSum::default();
         for (cell, u) in u.chunks_exact(self.new.state.components * n).enumerate() {
             let (block, lane) = scheme.operators.blocks.slot[cell];
             for (a, mass) in scheme.operators.geometry.masses(&scheme.operators.line, block, lane).enumerate() {
                 for (k, scale) in scale[self.new.body.material[cell]].iter().enumerate().take(UNKNOWNS) {
                     let rest = if k == 0 || k == 3 { 1.0 } else { 0.0 };
-                    sum += mass * scale * (u[k * n + a] - rest).powi(2);
+                    sum.add(mass * scale * (u[k * n + a] - rest).powi(2));
                 }
             }
         }
+        let sum = sum.value();
         if sum > 0.0 { self.new.transfer.error / sum.sqrt() } else { self.new.transfer.error }
     }
 

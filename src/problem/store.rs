@@ -2,7 +2,8 @@
 
 use super::body::Body;
 use crate::error::{Error, Result};
-use crate::io::{operators_file, own};
+use crate::io::operators_file::{self, Parts};
+use crate::io::own;
 use crate::operators::{Blocks, Line, Operators, Stored};
 use crate::scene::Scene;
 use std::collections::VecDeque;
@@ -26,13 +27,13 @@ impl Store<'_> {
         let places = body.places(scene);
         let needs = scene.needs(&places);
         let links = scene.links(&body.mesh)?;
-        let (line, blocks) = (Line::new(needs.degree), Blocks::new(&body.material, &links));
+        let (line, parts) = (Line::new(needs.degree), Parts { material: &body.material, links: &links });
         let key = operators_file::key(&body.mesh, &scene.periodic_groups(&body.mesh), &body.material, &needs);
         let mut notes = Vec::new();
         for path in self.look.iter().filter(|path| path.exists()) {
             // A damaged file is built again: it only holds what follows from the input.
-            match operators_file::read(path, &key, &blocks, &needs) {
-                Ok(Some(stored)) => {
+            match operators_file::read(path, &key, parts, &needs) {
+                Ok(Some((blocks, stored))) => {
                     let from = format!("matrices reused from {}", path.display());
                     return Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), from));
                 }
@@ -44,8 +45,9 @@ impl Store<'_> {
             let what = format!("{}, and dgmpm has not made it in this folder", notes.join("; "));
             return Err(Error::input(what, "give another folder by --out, or move the file"));
         }
+        let blocks = Blocks::new(&body.material, &links);
         let stored = Stored::build(&body.mesh, &blocks, &line, &needs)?;
-        operators_file::write(self.write, &key, &stored, &body.certificates)?;
+        operators_file::write(self.write, &key, &blocks, &stored, &body.certificates)?;
         notes.push(format!("matrices written to {}", self.write.display()));
         Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), notes.join("; ")))
     }

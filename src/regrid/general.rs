@@ -8,6 +8,7 @@ use crate::cloud::Locator;
 use crate::error::Error;
 use crate::mesh::map::{self, Corners};
 use crate::quadrature::gauss_legendre;
+use crate::sum::{ExactSum, exact_sum};
 use rayon::prelude::*;
 
 /// A cell counts as covered if its uncovered area is below this part of it, which allows for rounding of some clipped areas.
@@ -274,10 +275,10 @@ pub(super) fn settle(old: &Grid, new: &Grid, field: &Field, shares: &[Share], ou
     }
     let is_covered = |cell: usize| left[cell].abs() <= COVERED * areas[cell];
     out.uncovered = [
-        shares.iter().map(|share| share.uncovered).sum(),
-        (0..areas.len()).filter(|&cell| !is_covered(cell)).map(|cell| left[cell]).sum(),
+        exact_sum(shares.iter().map(|share| share.uncovered)),
+        exact_sum((0..areas.len()).filter(|&cell| !is_covered(cell)).map(|cell| left[cell])),
     ];
-    let whole: f64 = areas.iter().sum();
+    let whole = exact_sum(areas.iter().copied());
     refuse(out.uncovered, whole)?;
     let same = &out.same;
     out.u.par_chunks_exact_mut(stride).enumerate().filter(|(cell, _)| same[*cell].is_none()).for_each(|(cell, u)| {
@@ -316,13 +317,13 @@ fn restore(old: &Grid, new: &Grid, field: &Field, out: &mut Transfer) {
     let n = field.basis.len() * field.basis.len();
     let stride = field.components * n;
     let total = |grid: &Grid, u: &[f64], material: usize, of: &dyn Fn(usize) -> bool| {
-        let (mut sum, mut area) = ([0.0; 8], 0.0);
+        let (mut sum, mut area) = (<[ExactSum; 8]>::default(), ExactSum::default());
         for cell in (0..grid.material.len()).filter(|&cell| grid.material[cell] == material && of(cell)) {
             let own = integral(grid, field, cell, &u[stride * cell..stride * (cell + 1)]);
-            (0..8).for_each(|k| sum[k] += own[k]);
-            area += map::area(&grid.mesh.corners(cell));
+            sum.iter_mut().zip(own).for_each(|(sum, own)| sum.add(own));
+            area.add(map::area(&grid.mesh.corners(cell)));
         }
-        (sum, area)
+        (sum.map(|sum| sum.value()), area.value())
     };
     for material in 0..field.scale.len() {
         let (before, old_area) = total(old, field.u, material, &|_| true);

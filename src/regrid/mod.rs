@@ -23,6 +23,7 @@ use crate::error::Error;
 use crate::mesh::{Mesh, map};
 use crate::state::UNKNOWNS;
 use crate::step::{Relax, Scheme};
+use crate::sum::exact_sum;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -123,7 +124,7 @@ fn with_nodes<const M: usize>(old: &Grid, new: &Grid, field: &Field) -> Result<T
         Some(shares) => shares,
         None => general::project::<M>(old, new, field, &same, &mut u)?,
     };
-    let error = shares.iter().map(|share| share.error).sum::<f64>().sqrt();
+    let error = exact_sum(shares.iter().map(|share| share.error)).sqrt();
     let mut out = Transfer { u, same, structured, uncovered: [0.0; 2], error };
     if !structured {
         general::settle(old, new, field, &shares, &mut out)?;

@@ -3,6 +3,7 @@
 use crate::observe::{Field, Solution};
 use crate::state::State;
 use crate::step::Scheme;
+use crate::sum::ExactSum;
 use std::collections::BTreeMap;
 
 const FIELDS: [Field; 4] = [Field::Velocity, Field::Deformation, Field::Piola, Field::CauchyStress];
@@ -13,15 +14,15 @@ pub fn norms(scheme: &Scheme, state: &State, material: &[usize]) -> BTreeMap<Str
     let solution = Solution::of_state(scheme, state, material);
     let geometry = &scheme.operators.geometry;
     let names: Vec<String> = FIELDS.iter().flat_map(|field| field.components()).collect();
-    let mut squares = vec![0.0; names.len()];
+    let mut squares = vec![ExactSum::default(); names.len()];
     for (cell, &(block, lane)) in scheme.operators.blocks.slot.iter().enumerate() {
         let nodes = at_nodes(scheme, &solution, cell);
         let masses = geometry.masses(&scheme.operators.line, block, lane);
         for (values, mass) in nodes.iter().zip(masses) {
-            squares.iter_mut().zip(values).for_each(|(sum, value)| *sum += mass * value * value);
+            squares.iter_mut().zip(values).for_each(|(sum, value)| sum.add(mass * value * value));
         }
     }
-    names.into_iter().zip(squares.into_iter().map(f64::sqrt)).collect()
+    names.into_iter().zip(squares.iter().map(|sum| sum.value().sqrt())).collect()
 }
 
 /// All components at the nodes of a cell.

@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::operators::Blocks;
 use crate::state::State;
 use crate::step::{Balance, EnergyMade, Scheme, Totals, Work};
+use crate::sum::exact_sum;
 use crate::words::{Saved, Words};
 
 /// Shares of energy made at which something is done.
@@ -167,7 +168,7 @@ fn stiffness(scheme: &Scheme) -> f64 {
     };
     let of_block =
         |block: usize| moduli[material[block]] * (0..count[block]).map(|lane| area(block, lane)).sum::<f64>();
-    (0..count.len()).map(of_block).sum()
+    exact_sum((0..count.len()).map(of_block))
 }
 
 #[cfg(test)]

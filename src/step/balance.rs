@@ -31,6 +31,7 @@ use super::{Scheme, Work};
 use crate::lane::{F8, Lanes, load_array};
 use crate::riemann::tangent;
 use crate::state::UNKNOWNS;
+use crate::sum::exact_sum;
 use crate::tensor::{DEFORMATION, dot, times};
 
 /// The balance of energy since the start of a run, in J per metre of thickness.
@@ -172,18 +173,15 @@ impl Work {
         self.balance.is_some()
     }
 
-    /// Adds the last step to `balance`, cells in a fixed order. Nothing where the balance is off.
+    /// Adds the last step to `balance`, the blocks by an exact sum. Nothing where the balance is off.
     pub fn settle(&self, scheme: &Scheme, balance: &mut Balance) {
         let Some(blocks) = &self.balance else { return };
-        let (mut flux, mut boundary, mut corrected, mut energy) = (0.0, 0.0, 0.0, 0.0);
-        for (block, &count) in blocks.iter().zip(&scheme.operators.blocks.count) {
-            for lane in 0..count {
-                flux += block.flux.0[lane];
-                boundary += block.boundary.0[lane];
-                corrected += block.corrected.0[lane];
-                energy += block.energy.0[lane];
-            }
-        }
+        let sum = |of: fn(&BlockBalance) -> &F8| {
+            let cells = blocks.iter().map(of).zip(&scheme.operators.blocks.count);
+            exact_sum(cells.map(|(lanes, &count)| lanes.0[..count].iter().sum()))
+        };
+        let (flux, boundary) = (sum(|block| &block.flux), sum(|block| &block.boundary));
+        let (corrected, energy) = (sum(|block| &block.corrected), sum(|block| &block.energy));
         let [by_boundary, by_sources, between] = self.external_work(scheme);
         balance.contact_work += between;
         balance.boundary_work += by_boundary;

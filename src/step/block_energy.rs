@@ -9,6 +9,7 @@ use crate::lane::{F8, Lanes};
 use crate::material::{Material, Past, count, virgin};
 use crate::operators::with_nodes;
 use crate::state::State;
+use crate::sum::exact_sum;
 use crate::tensor::DEFORMATION;
 use rayon::prelude::*;
 
@@ -89,7 +90,7 @@ fn kinetic_energy<L: Lanes>(density: f64, masses: &[F8], u: &[F8]) -> L {
 
 impl Scheme {
     /// Kinetic, strain and dissipated energy of a state, J/m: [`super::Totals::accounted`] at a fraction of the cost. `cells` is
-    /// memory for it; cells are added in a fixed order.
+    /// memory for it; the blocks are added by an exact sum.
     pub fn energy(&self, state: &State, memory: &Memory, cells: &mut Vec<F8>) -> f64 {
         let blocks = &self.operators.blocks;
         let stride = state.components * self.operators.nodes();
@@ -101,6 +102,6 @@ impl Scheme {
                 BlockEnergy { scheme: self, block, u, internal, dt: 0.0, scratch }.find()
             });
         });
-        cells.iter().zip(&blocks.count).map(|(energy, &count)| energy.0[..count].iter().sum::<f64>()).sum()
+        exact_sum(cells.iter().zip(&blocks.count).map(|(energy, &count)| energy.0[..count].iter().sum()))
     }
 }

@@ -7,6 +7,7 @@ use crate::lane::{Coefficient, F8};
 use crate::mesh::map;
 use crate::operators::{PointMatrices, Share, determinant};
 use crate::state::{State, UNKNOWNS};
+use crate::sum::exact_sum;
 use crate::tensor::{self, DEFORMATION};
 use rayon::prelude::*;
 
@@ -107,22 +108,41 @@ impl Totals {
         self.max_curl = self.max_curl.max(other.max_curl);
         self.max_drift = self.max_drift.zip(other.max_drift).map(|(a, b)| a.max(b));
     }
+
+    /// The totals of `parts`, of which these, of no cell, know what is to be summed.
+    fn with_sums_of(mut self, parts: &[&Totals]) -> Self {
+        parts.iter().for_each(|part| self.add(part));
+        let sum = |of: &dyn Fn(&Totals) -> f64| exact_sum(parts.iter().map(|part| of(part)));
+        let known = |whole: Option<f64>, of: &dyn Fn(&Totals) -> Option<f64>| {
+            whole.map(|_| exact_sum(parts.iter().filter_map(|part| of(part))))
+        };
+        Totals {
+            kinetic: sum(&|part| part.kinetic),
+            strain: sum(&|part| part.strain),
+            dissipated: known(self.dissipated, &|part| part.dissipated),
+            momentum: std::array::from_fn(|k| sum(&|part| part.momentum[k])),
+            angular_momentum: known(self.angular_momentum, &|part| part.angular_momentum),
+            deformation: std::array::from_fn(|k| sum(&|part| part.deformation[k])),
+            ..self
+        }
+    }
 }
 
 impl Scheme {
-    /// Totals of a state; cells are added in a fixed order.
+    /// Totals of a state; the sums over the blocks are exact until they are rounded once, so that the order of the blocks does not
+    /// matter.
     pub fn totals(&self, state: &State) -> Totals {
-        let mut sum = Totals::empty(state);
-        self.totals_of_blocks(state).iter().for_each(|block| sum.add(block));
-        sum
+        Totals::empty(state).with_sums_of(&self.totals_of_blocks(state).iter().collect::<Vec<_>>())
     }
 
     /// Totals of the cells of each law, in the order of the laws.
     pub fn totals_by_law(&self, state: &State) -> Vec<Totals> {
-        let mut sums = vec![Totals::empty(state); self.laws.len()];
         let blocks = self.totals_of_blocks(state);
-        blocks.iter().zip(&self.operators.blocks.material).for_each(|(block, &law)| sums[law].add(block));
-        sums
+        let of_law = |law: usize| {
+            let own = blocks.iter().zip(&self.operators.blocks.material).filter(|(_, of)| **of == law);
+            Totals::empty(state).with_sums_of(&own.map(|(block, _)| block).collect::<Vec<_>>())
+        };
+        (0..self.laws.len()).map(of_law).collect()
     }
 
     fn totals_of_blocks(&self, state: &State) -> Vec<Totals> {

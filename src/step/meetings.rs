@@ -20,6 +20,7 @@ use crate::lane::LANES;
 use crate::mesh::{FACES, map};
 use crate::operators::{Neighbour, Operators};
 use crate::state::{State, UNKNOWNS};
+use crate::sum::exact_sum;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
 use std::sync::Arc;
@@ -37,8 +38,11 @@ pub struct Pairing {
 pub(super) struct Contacts {
     /// What acts, with its faces: of the first group and of the second.
     pairings: Vec<(Pairing, [Vec<usize>; 2])>,
-    /// All faces, ascending by block, face and lane.
+    /// All faces, ascending by cell of the mesh and local face: what several segments give to a face is added in this order, which
+    /// does not depend on the blocks.
     pub faces: Vec<Face>,
+    /// [`Face::key`] and the number of each face, ascending.
+    by_key: Vec<(usize, usize)>,
     /// Where no pairs are found anew: the two sides of each edge of a cut.
     cuts: Vec<(usize, [usize; 2])>,
 }
@@ -50,21 +54,21 @@ impl Contacts {
             return None;
         }
         let (mut faces, mut groups) = (vec![], vec![]);
-        for (block, around) in operators.blocks.neighbours.iter().enumerate() {
-            for (face, lanes) in around.iter().enumerate() {
-                for (lane, neighbour) in lanes.iter().enumerate() {
-                    let Neighbour::Boundary(group) = neighbour else { continue };
-                    if pairings.iter().any(|pairing| pairing.groups.contains(group)) {
-                        let law = &laws[operators.blocks.material[block]];
-                        faces.push(Face::new(operators, law, [block, face, lane]));
-                        groups.push(*group);
-                    }
+        for &(block, lane) in &operators.blocks.slot {
+            for (face, lanes) in operators.blocks.neighbours[block].iter().enumerate() {
+                let Neighbour::Boundary(group) = &lanes[lane] else { continue };
+                if pairings.iter().any(|pairing| pairing.groups.contains(group)) {
+                    let law = &laws[operators.blocks.material[block]];
+                    faces.push(Face::new(operators, law, [block, face, lane]));
+                    groups.push(*group);
                 }
             }
         }
+        let mut by_key: Vec<_> = faces.iter().map(Face::key).zip(0..).collect();
+        by_key.sort_unstable();
         let of = |group: usize| (0..faces.len()).filter(|&k| groups[k] == group).collect::<Vec<_>>();
         let pairings: Vec<_> = pairings.iter().map(|one| (one.clone(), one.groups.map(of))).collect();
-        let mut out = Self { pairings, faces, cuts: vec![] };
+        let mut out = Self { pairings, faces, by_key, cuts: vec![] };
         out.cuts = out.find_cuts();
         Some(out)
     }
@@ -76,7 +80,7 @@ impl Contacts {
 
     /// The number of a face among those that interact.
     pub fn number(&self, face: usize, lane: usize) -> Option<usize> {
-        self.faces.binary_search_by_key(&(face * LANES + lane), Face::key).ok()
+        self.by_key.binary_search_by_key(&(face * LANES + lane), |(key, _)| *key).ok().map(|at| self.by_key[at].1)
     }
 
     /// Blocks whose traces each other's faces may read, by block: what a plan of the step has to know.
@@ -90,6 +94,7 @@ impl Contacts {
             if pairing.law.pairs() == Pairs::Current {
                 let blocks = [first, second].map(|faces| {
                     let mut blocks: Vec<usize> = faces.iter().map(block).collect();
+                    blocks.sort_unstable();
                     blocks.dedup();
                     blocks
                 });
@@ -243,7 +248,7 @@ impl Meetings {
             // Points of a cut are those of the faces, in the order of the first.
             segment.points[..m].iter().enumerate().map(of_point).sum()
         };
-        self.segments.iter().map(of_segment).sum()
+        exact_sum(self.segments.iter().map(of_segment))
     }
 
     /// Current positions: X, and u where the state has it.

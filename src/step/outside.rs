@@ -6,6 +6,7 @@ use crate::lane::F8;
 use crate::mesh::FACES;
 use crate::operators::Neighbour;
 use crate::state::Received;
+use crate::sum::{ExactSum, exact_sum};
 
 /// Work on the cells of a block in a step, J/m, a lane a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -38,13 +39,15 @@ pub(super) struct Outside {
     pub entries: Vec<ExternalWork>,
     /// By face, beside the entries; none where nobody asks for forces: nothing is allocated and nothing is done for them then.
     pub forces: Option<Vec<FaceForces>>,
+    /// What the groups receive in a step, impulse and work: memory for their sums.
+    sums: Vec<[ExactSum; 3]>,
 }
 
 impl Outside {
     /// No work on any block of a scheme yet.
     pub fn new(scheme: &Scheme) -> Self {
         let blocks = &scheme.operators.blocks;
-        let mut out = Self { first: vec![0], cells: vec![], entries: vec![], forces: None };
+        let mut out = Self { first: vec![0], cells: vec![], entries: vec![], forces: None, sums: vec![] };
         for (faces, &count) in blocks.neighbours.iter().zip(&blocks.count) {
             let at_boundary = faces.iter().flatten().any(|beyond| matches!(beyond, Neighbour::Boundary(_)));
             if at_boundary || !scheme.sources.is_empty() {
@@ -75,27 +78,28 @@ pub(super) fn entry<'a, T>(first: &[u32], start: usize, all: &'a mut [T], block:
 }
 
 impl Work {
-    /// The work of the boundary, of sources, and of what acts between faces of the body in the last step, J/m, cells in a fixed order. The
-    /// last is no work of the outside: contact takes it from the body.
+    /// The work of the boundary, of sources, and of what acts between faces of the body in the last step, J/m, by exact sums. The last
+    /// is no work of the outside: contact takes it from the body.
     pub fn external_work(&self, scheme: &Scheme) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        for (work, &cells) in self.outside.entries.iter().zip(&self.outside.cells) {
-            sum[0] += work.boundary.0[..cells].iter().sum::<f64>();
-            sum[1] += work.source.0[..cells].iter().sum::<f64>();
-        }
-        if let (Some(contacts), Some(forces)) = (&scheme.contacts, &self.outside.forces) {
-            for face in &contacts.faces {
-                let entry = self.outside.first[face.face / FACES] as usize;
-                sum[2] += forces[entry].work[face.face % FACES].0[face.lane];
-            }
-            sum[0] -= sum[2];
-        }
-        sum
+        let sum = |of: fn(&ExternalWork) -> &F8| {
+            let entries = self.outside.entries.iter().map(of).zip(&self.outside.cells);
+            exact_sum(entries.map(|(lanes, &cells)| lanes.0[..cells].iter().sum()))
+        };
+        let [boundary, source] = [sum(|work| &work.boundary), sum(|work| &work.source)];
+        let (Some(contacts), Some(forces)) = (&scheme.contacts, &self.outside.forces) else {
+            return [boundary, source, 0.0];
+        };
+        let between = exact_sum(contacts.faces.iter().map(|face| {
+            let entry = self.outside.first[face.face / FACES] as usize;
+            forces[entry].work[face.face % FACES].0[face.lane]
+        }));
+        [boundary - between, source, between]
     }
 
     /// With the memory that forces need; the steps then meter them.
     pub fn with_forces(mut self) -> Self {
         self.outside.forces = Some(vec![FaceForces::default(); self.outside.entries.len()]);
+        self.outside.sums = vec![Default::default(); self.next.received.len()];
         self
     }
 
@@ -104,24 +108,31 @@ impl Work {
         self.outside.forces.is_some()
     }
 
-    /// Adds what the last step received through each boundary group to `before`, into the new state; blocks, faces and cells in a
-    /// fixed order. Nothing where forces are not metered.
+    /// Adds what the last step received through each boundary group, by exact sums over its faces, to `before`, into the new state.
+    /// Nothing where forces are not metered.
     pub(super) fn receive(&mut self, scheme: &Scheme, before: &[Received]) {
         let Some(forces) = &self.outside.forces else { return };
-        let (blocks, out) = (&scheme.operators.blocks, &mut self.next.received);
-        out.clear();
-        out.extend_from_slice(before);
+        let (blocks, sums) = (&scheme.operators.blocks, &mut self.outside.sums);
+        sums.resize_with(before.len(), Default::default);
+        sums.iter_mut().flatten().for_each(ExactSum::clear);
         for (block, &count) in blocks.count.iter().enumerate() {
             let entries = self.outside.first[block] as usize..self.outside.first[block + 1] as usize;
             let Some(entry) = forces[entries].first() else { continue };
             for (face, neighbours) in blocks.neighbours[block].iter().enumerate() {
                 for (lane, neighbour) in neighbours.iter().enumerate().take(count) {
                     let Neighbour::Boundary(group) = neighbour else { continue };
-                    let Some(out) = out.get_mut(*group) else { continue };
-                    (0..2).for_each(|axis| out.impulse[axis] += entry.impulse[face][axis].0[lane]);
-                    out.work += entry.work[face].0[lane];
+                    let Some([one, two, work]) = sums.get_mut(*group) else { continue };
+                    one.add(entry.impulse[face][0].0[lane]);
+                    two.add(entry.impulse[face][1].0[lane]);
+                    work.add(entry.work[face].0[lane]);
                 }
             }
         }
+        let received = |(before, [one, two, work]): (&Received, &[ExactSum; 3])| Received {
+            impulse: [before.impulse[0] + one.value(), before.impulse[1] + two.value()],
+            work: before.work + work.value(),
+        };
+        self.next.received.clear();
+        self.next.received.extend(before.iter().zip(sums.iter()).map(received));
     }
 }

@@ -15,6 +15,7 @@ use crate::mesh::FACES;
 use crate::operators::{Neighbour, with_nodes};
 use crate::state::State;
 use crate::step::volume::Masses;
+use crate::sum::ExactSum;
 use crate::tensor::{self, DEFORMATION};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -178,17 +179,17 @@ impl Scheme {
         start.boundary.clone_from(&state.boundary);
         start.unheld.clone_from(&state.unheld);
         let stride = state.components * self.operators.nodes();
-        let mut loss = 0.0;
+        let mut loss = ExactSum::default();
         for (block, &lanes) in memory.blocks.flat.iter().enumerate().filter(|(_, lanes)| **lanes != 0) {
             flatten(self, block, lanes, &mut start.u[stride * block..stride * (block + 1)]);
             self.move_histories(block, lanes, (state, &mut start));
             if balance.is_some() {
                 let [before, after] = [state, &start].map(|state| self.energy_of_block(state, block, scratch));
                 let cells = 0..self.operators.blocks.count[block];
-                loss += cells.map(|lane| before.0[lane] - after.0[lane]).sum::<f64>();
+                loss.add(cells.map(|lane| before.0[lane] - after.0[lane]).sum());
             }
         }
-        memory.loss[0] = loss;
+        memory.loss[0] = loss.value();
         Some(start)
     }
 }

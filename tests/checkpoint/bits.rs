@@ -83,18 +83,6 @@ fn a_limiter_with_its_rescue() {
     }
 }
 
-/// A scene of a mesh of parts: the pairs of group and condition, and the velocity.
-fn of_parts(bench: &Bench, parts: &Parts, conditions: &[(&str, &str)], velocity: &str) {
-    parts.write(&bench.path("."));
-    let conditions: String = conditions.iter().map(|(group, kind)| format!("{{group=\"{group}\",{kind}}},")).collect();
-    let text = format!(
-        "title = \"parts\"\nmesh.file = \"mesh.msh\"\nboundary = [{conditions}]\n[[material]]\nlaw = \"neo-hookean\"\nyoung = 2e11\npoisson = 0.3\n\
-         density = 7800\n[initial]\nvelocity = [{velocity}]\n[scheme]\nmethod = \"ader-dgmpm\"\ndegree = 2\n[time]\nend = 2e-4\n\
-         [[output]]\nkind = \"ledger\"\n[[output]]\nkind = \"fields\"\nevery = 5e-5\n[[output]]\nkind = \"force\"\nname = \"f\"\n"
-    );
-    std::fs::write(bench.path("parts.toml"), text).unwrap();
-}
-
 #[test]
 fn contact_with_friction_and_a_cohesive_edge() {
     let bench = Bench::new();
@@ -103,13 +91,13 @@ fn contact_with_friction_and_a_cohesive_edge() {
     parts.rectangle([0.0; 2], [1.0, 0.5], [4, 2], "body", &sides(["out", "a", "out", "out"]));
     parts.rectangle([1.005, 0.1], [0.5, 0.5], [3, 3], "body", &sides(["b", "out", "out", "out"]));
     let conditions = [("out", "kind=\"free\""), ("a", "kind=\"contact\",partner=\"b\",friction=0.3")];
-    of_parts(&bench, &parts, &conditions, "\"100*step(1.001 - x)\", \"-30*step(x - 1.001)\"");
+    bench.of_parts(&parts, &conditions, "\"100*step(1.001 - x)\", \"-30*step(x - 1.001)\"");
     compare("contact", &bench.path("parts.toml"), &[], &[20, 60]);
     let mut parts = Parts::default();
     parts.rectangle([0.0; 2], [1.0, 0.4], [8, 4], "body", &sides(["out"; 4]));
     parts.group((0..8).map(|cell| (8 + cell, 3)), "joint");
     let conditions = [("out", "kind=\"free\""), ("joint", "kind=\"cohesive\",strength=2e8,energy=2e4")];
-    of_parts(&bench, &parts, &conditions, "0, \"40*step(y - 0.2) - 20\"");
+    bench.of_parts(&parts, &conditions, "0, \"40*step(y - 0.2) - 20\"");
     compare("cohesive", &bench.path("parts.toml"), &[], &[15, 40]);
 }
 

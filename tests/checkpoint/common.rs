@@ -1,5 +1,6 @@
 //! Scenes, folders and what a run has written.
 
+use crate::bodies::Parts;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -80,6 +81,19 @@ pub struct Bench {
 }
 
 impl Bench {
+    /// Writes `parts.toml`, a scene of a mesh of parts: the pairs of group and condition, and the velocity.
+    pub fn of_parts(&self, parts: &Parts, conditions: &[(&str, &str)], velocity: &str) {
+        parts.write(&self.path("."));
+        let conditions: String =
+            conditions.iter().map(|(group, kind)| format!("{{group=\"{group}\",{kind}}},")).collect();
+        let text = format!(
+            "title = \"parts\"\nmesh.file = \"mesh.msh\"\nboundary = [{conditions}]\n[[material]]\nlaw = \"neo-hookean\"\nyoung = 2e11\npoisson = 0.3\n\
+             density = 7800\n[initial]\nvelocity = [{velocity}]\n[scheme]\nmethod = \"ader-dgmpm\"\ndegree = 2\n[time]\nend = 2e-4\n\
+             [[output]]\nkind = \"ledger\"\n[[output]]\nkind = \"fields\"\nevery = 5e-5\n[[output]]\nkind = \"force\"\nname = \"f\"\n"
+        );
+        std::fs::write(self.path("parts.toml"), text).unwrap();
+    }
+
     pub fn new() -> Self {
         let bench = Self { folder: tempfile::tempdir().unwrap() };
         std::fs::write(bench.path("case.toml"), SCENE).unwrap();

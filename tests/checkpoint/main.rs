@@ -6,4 +6,5 @@ mod bits;
 mod common;
 mod faults;
 mod folders;
+mod order;
 mod signals;

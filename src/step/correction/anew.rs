@@ -8,6 +8,7 @@ use crate::step::block_energy::BlockEnergy;
 use crate::step::survey::{Examine, History};
 use crate::step::worst::Worst;
 use crate::step::{Scheme, Scratch, Speeds, Work, with_scratch};
+use crate::sum::ExactSum;
 use std::sync::Mutex;
 
 /// What is found anew of some blocks that follow each other.
@@ -87,7 +88,7 @@ impl Scheme {
         loss[1] = balance.as_mut().map_or(0.0, |balance| self.renew_energy(next, changed, balance, scratch));
     }
 
-    /// Renews the energy of changed blocks; what they lost, cells in a fixed order.
+    /// Renews the energy of changed blocks; what they lost, by an exact sum.
     fn renew_energy(
         &self,
         state: &State,
@@ -95,15 +96,14 @@ impl Scheme {
         balance: &mut [BlockBalance],
         scratch: &[Mutex<Scratch>],
     ) -> f64 {
-        let mut loss = 0.0;
+        let mut loss = ExactSum::default();
         for (block, balance) in balance.iter_mut().enumerate().filter(|(block, _)| changed[*block] != 0) {
             let energy = self.energy_of_block(state, block, scratch);
-            for lane in 0..self.operators.blocks.count[block] {
-                loss += balance.energy.0[lane] - energy.0[lane];
-            }
+            let cells = 0..self.operators.blocks.count[block];
+            loss.add(cells.map(|lane| balance.energy.0[lane] - energy.0[lane]).sum());
             balance.energy = energy;
         }
-        loss
+        loss.value()
     }
 
     /// The energy of the cells of a block, with what laws have dissipated, J/m.
