@@ -23,6 +23,7 @@ mod stability;
 mod study;
 mod summary;
 mod threads;
+mod verify;
 
 pub use process::{main, run};
 
@@ -42,7 +43,11 @@ Stage by stage, each from files:
 After an interruption, or to a later end:
   dgmpm resume runs/square
 
-Exit codes: 0 done, 2 bad input, 3 the run lost stability, 4 interrupted and saved, 5 output could not be written.";
+Whether all files are whole, and this machine gives the same bits:
+  dgmpm verify runs/square
+
+Exit codes: 0 done, 2 bad input, 3 the run lost stability, 4 interrupted and saved, 5 output could not be written,
+6 a folder is not whole or has other bits (verify).";
 
 /// ADER Discontinuous Galerkin Material Point Method for fast, large-deformation solid dynamics.
 #[derive(Debug, Parser)]

@@ -1,4 +1,4 @@
-//! Named arrays and text attributes in one sealed HDF5 file, with the name and version of the format. Mesh, cloud and
+//! Named arrays and text attributes in one sealed HDF5 file, with the name and version of the format and of the program. Mesh, cloud and
 //! snapshot files are stores. Any other data that has to outlive a process may be a store too.
 
 use std::collections::BTreeMap;
@@ -7,6 +7,7 @@ use std::path::Path;
 
 use super::hdf5::{self, Reader, Values};
 use super::regular;
+use crate::built;
 use crate::error::{Error, Result};
 
 /// The format of a file, and the command that makes the file again.
@@ -66,6 +67,9 @@ pub(super) fn write_kept(
     kept: hdf5::Kept,
 ) -> Result<()> {
     let mut all: BTreeMap<String, String> = attributes.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
+    for (name, text) in hdf5::PROGRAM.into_iter().zip([built::PROGRAM, built::commit()]) {
+        all.entry(name.to_owned()).or_insert_with(|| text.to_owned());
+    }
     all.insert(FORMAT.to_owned(), format.name.to_owned());
     all.insert(VERSION.to_owned(), format.version.to_string());
     hdf5::create_sealed(path, kept, |file| {

@@ -34,7 +34,7 @@ impl Store<'_> {
             match operators_file::read(path, &key, &blocks, &needs) {
                 Ok(Some(stored)) => {
                     let from = format!("matrices reused from {}", path.display());
-                    return Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), from));
+                    return Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored).with_key(key), from));
                 }
                 Ok(None) => notes.push(format!("{} belongs to other mesh, cloud, degree or method", path.display())),
                 Err(_) => notes.push(format!("{} is damaged", path.display())),
@@ -47,7 +47,7 @@ impl Store<'_> {
         let stored = Stored::build(&body.mesh, &blocks, &line, &needs)?;
         operators_file::write(self.write, &key, &stored, &body.certificates)?;
         notes.push(format!("matrices written to {}", self.write.display()));
-        Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), notes.join("; ")))
+        Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored).with_key(key), notes.join("; ")))
     }
 }
 
@@ -74,10 +74,10 @@ impl Recent {
             Some((_, stored)) => stored,
             None => Stored::build(&body.mesh, &blocks, &line, &needs)?,
         };
-        self.0.push_back((key, stored.clone()));
+        self.0.push_back((key.clone(), stored.clone()));
         if self.0.len() > KEPT {
             self.0.pop_front();
         }
-        Ok(Operators::assemble(&body.mesh, line, blocks, &needs, stored))
+        Ok(Operators::assemble(&body.mesh, line, blocks, &needs, stored).with_key(key))
     }
 }

@@ -39,6 +39,12 @@ impl Lock {
     }
 }
 
+/// Whether a run is writing into a folder; looks, and writes nothing.
+pub(super) fn is_taken(root: &Path) -> bool {
+    let file = File::open(root.join(LIST));
+    file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
+}
+
 impl Drop for Lock {
     fn drop(&mut self) {
         // A run that ended before it wrote anything leaves nothing; a folder with files stays.
