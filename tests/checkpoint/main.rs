@@ -2,8 +2,11 @@
 
 #[path = "../bodies/mod.rs"]
 mod bodies;
+mod again;
 mod bits;
 mod common;
 mod faults;
 mod folders;
+mod full;
 mod signals;
+mod verify;
