@@ -16,6 +16,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Steps that are done again where nobody says how many: up to the second row of the ledger, and at most so many.
 const MOST: usize = 100;
+/// At least so many.
+const LEAST: usize = 10;
 
 /// What steps that were done again have shown.
 #[derive(Debug, Default)]
@@ -66,7 +68,7 @@ pub fn repeat(folder: &Folder, steps: Option<usize>, kernel: Kernel) -> Result<R
     let store = Store { look: &[&own], write: &write };
     let mut problem = Setup::of(&scene).kernel(kernel).store(store).build_on(body)?;
     let start = problem.state.step;
-    let steps = steps.unwrap_or_else(|| second_row(&folder.ledger(), start).clamp(1, MOST));
+    let steps = steps.unwrap_or_else(|| second_row(&folder.ledger(), start).clamp(LEAST, MOST));
     let stop = Arc::new(AtomicBool::new(false));
     let until =
         StopAfter { schedule: Schedule::new(When::EverySteps(1), false), last: start + steps, stop: stop.clone() };
