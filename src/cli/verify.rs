@@ -46,12 +46,13 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 fn rows(whole: &Whole) -> Vec<Row> {
-    let status =
-        whole.summary["status"].as_str().unwrap_or("no summary.json: the run was killed, or is an earlier one");
-    vec![
+    let status = whole.summary["status"].as_str().unwrap_or("no summary.json: the run was killed");
+    let mut rows = vec![
         row("run", status),
         row("whole by their seal", count(whole.sealed, "file")),
         row("whole by their hash in .dgmpm", count(whole.hashed, "file")),
         row("without a hash, rows whole", count(whole.open.len(), "table")),
-    ]
+    ];
+    rows.extend(whole.unmade.first().map(|name| row("begun and not made", name)));
+    rows
 }

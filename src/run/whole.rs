@@ -16,6 +16,8 @@ pub struct Whole {
     pub hashed: usize,
     /// Tables of a run that was killed or goes on: they have no hash yet, and whole rows.
     pub open: Vec<String>,
+    /// Files that a run that was killed or failed has begun and not made.
+    pub unmade: Vec<String>,
     /// What is wrong, a line each with the name of the file.
     pub faults: Vec<String>,
     /// What `summary.json` says; null where it is not there.
@@ -37,7 +39,8 @@ impl Whole {
         if folder.is_taken() {
             return Err(Error::input(format!("a run is writing into {root}"), "wait for its end"));
         }
-        let mut out = Self::default();
+        let text = std::fs::read_to_string(folder.summary()).unwrap_or_default();
+        let mut out = Self { summary: serde_json::from_str(&text).unwrap_or(Value::Null), ..Self::default() };
         let list = own::hashes(&folder.root);
         for (name, hash) in &list {
             out.file(folder, name, hash.as_deref());
@@ -56,9 +59,12 @@ impl Whole {
         let bytes = match std::fs::read(&path) {
             Ok(bytes) => bytes,
             Err(_) if !path.exists() => {
-                // The run itself removes all but its last checkpoints.
-                if !name.starts_with("checkpoints/") {
-                    self.faults.push(format!("{name} is missing"));
+                // The run itself removes all but its last checkpoints; one that was killed or found no space has not made all that it began.
+                let ended = ["done", "interrupted"].iter().any(|status| self.summary["status"] == *status);
+                match name.starts_with("checkpoints/") {
+                    true => {}
+                    false if ended || hash.is_some() => self.faults.push(format!("{name} is missing")),
+                    false => self.unmade.push(name.to_owned()),
                 }
                 return;
             }
@@ -83,8 +89,6 @@ impl Whole {
 
     /// Whether a run that is done has its last step in the ledger.
     fn ends_as_its_summary_says(&mut self, folder: &Folder) {
-        let text = std::fs::read_to_string(folder.summary()).unwrap_or_default();
-        self.summary = serde_json::from_str(&text).unwrap_or(Value::Null);
         let (status, end) = (self.summary["status"].as_str(), self.summary["end_time"].as_f64());
         let last = last_time(&folder.ledger());
         if status == Some("done") && end != last {

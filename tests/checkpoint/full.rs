@@ -54,3 +54,25 @@ fn a_file_without_space_is_one_message_and_leaves_no_half_file() {
     assert_eq!(parts(&bench), [""; 0], "nothing is left under a temporary name");
     bench.run("verify r --steps 0");
 }
+
+/// Found by `make faults`: the state of a run that has not begun has no memory of its conditions yet, and keeping it was a panic.
+#[test]
+fn a_run_whose_outputs_cannot_be_made_is_one_message() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path("r")).unwrap();
+    std::fs::write(bench.path("r/tracks"), "mine").unwrap();
+    let message = bench.fail(5, "run case.toml --out r");
+    assert!(message.contains("cannot write r/tracks"), "{message}");
+    assert_eq!(std::fs::read_to_string(bench.path("r/tracks")).unwrap(), "mine");
+}
+
+#[test]
+fn a_folder_that_may_not_be_written_to_is_one_message() {
+    let bench = Bench::new();
+    // A name that is no folder: a user who is root may write into any folder.
+    std::fs::write(bench.path("file"), "mine").unwrap();
+    for arguments in ["run case.toml --out file/r", "mesh rectangle --size 1,1 --cells 2,2 --out file/m.h5"] {
+        let message = bench.fail(5, arguments);
+        assert!(message.contains("cannot write file"), "{message}");
+    }
+}
