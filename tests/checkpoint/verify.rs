@@ -35,9 +35,8 @@ fn the_first_steps_of_a_whole_run_have_the_same_bits_and_its_files_say_where_the
     let first = Snapshot::read(&first).unwrap().provenance;
     assert_eq!(from["scene_hash"], first.scene);
     assert_eq!(from["kernel"], first.kernel);
-    let vtu = fs::read_dir(bench.path("r/export")).unwrap().map(|file| file.unwrap().path());
-    for path in vtu.filter(|path| path.extension().is_some_and(|ending| ending == "vtu")) {
-        assert!(fs::read_to_string(&path).unwrap().contains(&first.line()), "{}", path.display());
+    for file in ["grid_000000.vtu", "points_000000.vtu"] {
+        assert!(fs::read_to_string(bench.path("r/export").join(file)).unwrap().contains(&first.line()), "{file}");
     }
 }
 
@@ -57,7 +56,6 @@ fn a_flipped_byte_a_missing_file_and_a_torn_row_are_found_in_each_kind_of_file()
         let bytes = fs::read(&path).unwrap();
         flip(&path, (0.137 + 0.391 * number as f64).fract());
         let message = bench.fail(6, "verify r --steps 0");
-        // A flipped mark of a seal is no seal.
         assert!(message.contains("r is not whole") && message.contains(&format!("\n  {name} ")), "{message}");
         fs::write(&path, bytes).unwrap();
     }
