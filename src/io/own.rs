@@ -3,7 +3,7 @@
 //! What is not on the list belongs to the user: it is neither removed nor replaced.
 //!
 //! A file that has no seal of its own, such as a table, has its blake3 hash behind its name and a tab, once it is complete. The last line
-//! of a name counts: one without a hash says that the file is being written.
+//! of a name counts: one without a hash says that the file is being written, and one with a tab and nothing behind it that it was not made.
 //!
 //! A folder without the list is no folder of a run; nothing is noted there.
 
@@ -43,6 +43,13 @@ pub fn begin(target: &Path) -> Result<()> {
 /// A list that cannot be written.
 pub fn finish(target: &Path, hash: &blake3::Hash) -> Result<()> {
     place(target).map_or(Ok(()), |(root, name)| append(&root, &format!("{name}{TAB}{}\n", hash.to_hex())))
+}
+
+/// Says that a file that was begun has not been made, and is not there. Where that cannot be written, its name stays.
+pub fn give_up(target: &Path) {
+    if let Some((root, name)) = place(target).filter(|_| target.symlink_metadata().is_err()) {
+        let _ = append(&root, &format!("{name}{TAB}\n"));
+    }
 }
 
 fn append(root: &Path, line: &str) -> Result<()> {
@@ -87,7 +94,9 @@ pub fn hashes(root: &Path) -> BTreeMap<String, Option<String>> {
         Some((name, hash)) => (name.to_owned(), Some(hash.to_owned())),
         None => (line.to_owned(), None),
     };
-    whole.lines().map(entry).filter(|(name, _)| is_plain(name)).collect()
+    let mut all: BTreeMap<_, _> = whole.lines().map(entry).filter(|(name, _)| is_plain(name)).collect();
+    all.retain(|_, hash| hash.as_deref() != Some(""));
+    all
 }
 
 /// Writes the names of the files that are still there in place of the list.
@@ -173,6 +182,11 @@ mod tests {
         assert!(known("ledger.csv").is_some_and(|hash| hash.is_some()) && known("old.csv").is_none());
         begin(&table).unwrap();
         assert_eq!(known("ledger.csv"), Some(None), "it is written again");
+        give_up(&table);
+        assert_eq!(known("ledger.csv"), Some(None), "it is there");
+        std::fs::remove_file(&table).unwrap();
+        give_up(&table);
+        assert_eq!(known("ledger.csv"), None);
     }
 
     #[test]

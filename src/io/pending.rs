@@ -87,6 +87,7 @@ impl Drop for Pending {
     fn drop(&mut self) {
         // After a commit there is nothing to remove; before it, a file that cannot be removed does no harm.
         let _ = fs::remove_file(&self.temporary);
+        own::give_up(&self.target);
     }
 }
 
