@@ -156,7 +156,8 @@ COMMANDS = {
     "input of a run": "run case.toml --out {}/new",
     "VTU": "export {}/r --format vtu",
     "XDMF": "export {}/r --format xdmf",
-    "study, with plots": "study case.toml --set regrid=[] --methods rk-dgfem --degrees 1 --refine 1 --repeat 1 --out {}/study",
+    "plot": "stability --body 4,1 --degree 1 --over poisson=.3,.4 --plot {}/p.svg",
+    "study": "study case.toml --set regrid=[] --methods rk-dgfem --degrees 1 --refine 1 --repeat 1 --out {}/study",
 }
 # Runs that fail in their midst, by the one file that they write again and again.
 OUTPUTS = {

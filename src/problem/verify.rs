@@ -74,15 +74,14 @@ pub fn repeat(folder: &Folder, steps: Option<usize>, kernel: Kernel) -> Result<R
         StopAfter { schedule: Schedule::new(When::EverySteps(1), false), last: start + steps, stop: stop.clone() };
     let never = AtomicBool::new(false);
     let (report, result) = problem.record(&again, vec![Box::new(until)], [&stop, &never], |_, _| {});
-    let to_its_end = match result {
-        Ok(()) => true,
-        Err(Error::Interrupted(_)) => false,
+    match result {
+        Ok(()) | Err(Error::Interrupted(_)) => {}
         Err(why) => return Err(why),
-    };
+    }
     let mut out = Repeated { steps: report.steps, ..Repeated::default() };
     out.compare_snapshots(folder, &again, start)?;
     for table in tables(&again.root) {
-        out.compare_table(folder, &again, &table, to_its_end);
+        out.compare_table(folder, &again, &table);
     }
     Ok(out)
 }
@@ -102,14 +101,13 @@ impl Repeated {
         Ok(())
     }
 
-    /// The rows of a table that both have; the last one may belong to a step that was cut short.
-    fn compare_table(&mut self, run: &Folder, again: &Folder, name: &Path, to_its_end: bool) {
+    /// The rows of a table that both have.
+    fn compare_table(&mut self, run: &Folder, again: &Folder, name: &Path) {
         let text = |folder: &Folder| std::fs::read_to_string(folder.root.join(name)).unwrap_or_default();
         let (run, again) = (text(run), text(again));
-        let count = again.lines().count().saturating_sub(usize::from(!to_its_end));
         // The header, and the row of the start.
         let first = 2;
-        for (number, (row, wanted)) in again.lines().take(count).zip(run.lines()).enumerate() {
+        for (number, (row, wanted)) in again.lines().zip(run.lines()).enumerate() {
             if row != wanted {
                 self.differs.push(format!("{} differs from line {} on", name.display(), number + 1));
                 return;

@@ -22,6 +22,10 @@ fn the_first_steps_of_a_whole_run_have_the_same_bits_and_its_files_say_where_the
     let bench = whole();
     let said = bench.run("verify r --threads 2");
     assert!(said.contains("steps done again") && said.contains("the same bits in "), "{said}");
+    // The ledger that every run has, of each tenth step.
+    bench.run("run case.toml --out plain --set output=[] --set quantity=[]");
+    let said = bench.run("verify plain");
+    assert!(said.contains(" 1 row of tables"), "{said}");
     let said = bench.run("verify r --steps 1000");
     assert!(said.contains("0 tables") && !said.contains(" 0 rows") && !said.contains(" 0 snapshots"), "{said}");
     let summary: serde_json::Value = serde_json::from_slice(&fs::read(bench.path("r/summary.json")).unwrap()).unwrap();
