@@ -51,7 +51,7 @@ fn rows(whole: &Whole) -> Vec<Row> {
         row("run", status),
         row("whole by their seal", count(whole.sealed, "file")),
         row("whole by their hash in .dgmpm", count(whole.hashed, "file")),
-        row("without a hash, rows whole", count(whole.open.len(), "table")),
+        row("without a hash", count(whole.open.len(), "file")),
     ];
     rows.extend(whole.unmade.first().map(|name| row("begun and not made", name)));
     rows
