@@ -73,7 +73,8 @@ impl Newest {
             let remedy = "only title, time.end, [watch] and [checkpoint] may change; for another scene use `dgmpm run`";
             return Err(Error::input(format!("the checkpoint is of another scene: {what}"), remedy));
         }
-        if snapshot.time >= scene.end {
+        // A run that was killed at its end has its last rows still before it.
+        if snapshot.time > scene.end || snapshot.time == scene.end && folder.is_done() {
             let what = format!("the run is at its end, {:e} s", snapshot.time);
             return Err(scene.error("time.end", what, "give a later end by --set time.end=.."));
         }

@@ -130,6 +130,12 @@ impl Folder {
         Lock::take(&self.root)
     }
 
+    /// Whether the run in the folder came to its end, with all its rows, by its summary.
+    pub fn is_done(&self) -> bool {
+        let text = std::fs::read_to_string(self.summary()).unwrap_or_default();
+        serde_json::from_str::<serde_json::Value>(&text).is_ok_and(|summary| summary["status"] == "done")
+    }
+
     /// Whether a run is writing into the folder.
     pub fn is_taken(&self) -> bool {
         lock::is_taken(&self.root)

@@ -19,6 +19,16 @@ fn the_same_command_begins_goes_on_and_ends() {
     let said = bench.run(command);
     assert!(said.contains("r has this run, done at 1.2"), "{said}");
     assert_same("done", &bench.path("whole"), &bench.path("r"));
+    // Killed behind the checkpoint of the end, and before the last rows.
+    let ledger = bench.path("r/ledger.csv");
+    let rows = fs::read_to_string(&ledger).unwrap();
+    let last = rows.trim_end().rfind('\n').unwrap() + 1;
+    for command in [command, "resume r"] {
+        fs::write(&ledger, &rows[..last]).unwrap();
+        fs::remove_file(bench.path("r/summary.json")).unwrap();
+        bench.run(command);
+        assert_same("the end", &bench.path("whole"), &bench.path("r"));
+    }
     // Killed before the first checkpoint: there is nothing to go on from.
     fs::remove_dir_all(bench.path("r/checkpoints")).unwrap();
     fs::remove_file(bench.path("r/summary.json")).unwrap();
