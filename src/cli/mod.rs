@@ -40,10 +40,8 @@ Stage by stage, each from files:
   dgmpm preprocess square.toml --mesh square.h5 --cloud cloud.h5 --out operators.h5
   dgmpm solve square.toml --mesh square.h5 --cloud cloud.h5 --operators operators.h5
 
-After an interruption, or to a later end:
+After an interruption, or to a later end; and whether all files are whole:
   dgmpm resume runs/square
-
-Whether all files are whole, and this machine gives the same bits:
   dgmpm verify runs/square
 
 Exit codes: 0 done, 2 bad input, 3 the run lost stability, 4 interrupted and saved, 5 output could not be written,

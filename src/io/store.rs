@@ -212,8 +212,9 @@ pub fn is_store(path: &Path) -> bool {
         return false;
     }
     let mut head = Vec::new();
-    // Each name of a format begins so.
+    // Each name of a format begins so; the version of the program, which exports have too, is a number.
     let mark = b"dgmpm ";
+    let is_format = |text: &[u8]| text.strip_prefix(mark).is_some_and(|name| name.iter().all(u8::is_ascii_alphabetic));
     let read = std::fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
-    read.is_ok() && head.windows(mark.len()).any(|window| window == mark)
+    read.is_ok() && head.windows(mark.len() + 1).any(is_format)
 }

@@ -12,7 +12,9 @@ fn the_same_command_begins_goes_on_and_ends() {
     bench.run(command);
     assert_same("begun", &bench.path("whole"), &bench.path("r"));
     let newest = checkpoint::list(&bench.path("r/checkpoints")).unwrap();
+    // Stopped before its end.
     fs::remove_file(&newest[1].1).unwrap();
+    fs::remove_file(bench.path("r/summary.json")).unwrap();
     let said = bench.run(command);
     assert!(said.contains(&format!("resumed at step {}", newest[0].0)), "{said}");
     assert_same("went on", &bench.path("whole"), &bench.path("r"));
