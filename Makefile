@@ -25,7 +25,7 @@ setup:
 	@tools/setup.sh
 
 build: setup
-	cargo build --release
+	DGMPM_COMMIT="$$(tools/commit.sh)" cargo build --release
 	@echo "the program: $$(DGMPM= tools/program.sh)"
 
 demo: build

@@ -74,6 +74,9 @@ pub enum Error {
         /// The system's reason.
         why: String,
     },
+    /// The folder of a run is not whole, or this machine does not give its bits (exit code 6).
+    #[error("{}", .0.join("\n  "))]
+    NotWhole(Vec<String>),
 }
 
 impl fmt::Debug for Error {
@@ -118,13 +121,14 @@ impl Error {
         Error::Output { path: path.display().to_string(), why: why.to_string() }
     }
 
-    /// The exit code of the program: 2 bad input, 3 lost stability, 4 interrupted, 5 output.
+    /// The exit code of the program: 2 bad input, 3 lost stability, 4 interrupted, 5 output, 6 a folder that is not whole.
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Input { .. } => 2,
             Error::Unstable { .. } => 3,
             Error::Interrupted(_) => 4,
             Error::Output { .. } => 5,
+            Error::NotWhole(_) => 6,
         }
     }
 }

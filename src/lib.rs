@@ -158,6 +158,9 @@ pub use track::{Column, Track, Tracked};
 /// The command line, `dgmpm ..`. A program that adds to [`registry`] first has it with laws, conditions and sources of its own.
 pub use cli::main;
 
+/// Says from which commit a program was built, for the files that it writes.
+pub use built::from_commit;
+
 /// The recipes of `docs/extend.md`, compiled by the tests of the documentation.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/extend.md")]

@@ -1,6 +1,6 @@
 //! The subcommands.
 
-use super::{bench, effects, export, mesh, preprocess, regrid, resume, run, seed, solve, stability, study};
+use super::{bench, effects, export, mesh, preprocess, regrid, resume, run, seed, solve, stability, study, verify};
 use crate::error::Result;
 use clap::Subcommand;
 
@@ -21,6 +21,8 @@ pub enum Command {
     Run(run::Args),
     /// Go on with a run from its last checkpoint, as if it had never stopped
     Resume(resume::Args),
+    /// Tell whether the folder of a run is whole, and whether this machine gives its bits
+    Verify(verify::Args),
     /// Show what accuracy costs in time: methods, degrees and meshes on one problem
     Study(study::Args),
     /// Tell how perturbations of a state grow: spectrum of the linearised step of a patch or a small body
@@ -36,10 +38,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Runs the command.
-    ///
-    /// # Errors
-    /// The one message for the user.
+    /// Runs the command; an error is the one message for the user.
     pub fn run(self) -> Result<()> {
         match self {
             Command::Mesh(args) => mesh::run(&args),
@@ -48,6 +47,7 @@ impl Command {
             Command::Solve(args) => solve::run(&args),
             Command::Run(args) => run::run(&args),
             Command::Resume(args) => resume::run(&args),
+            Command::Verify(args) => verify::run(&args),
             Command::Study(args) => study::run(&args),
             Command::Stability(args) => stability::run(&args),
             Command::Bench(args) => bench::run(&args),

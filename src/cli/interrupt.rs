@@ -21,6 +21,10 @@ pub fn listen() {
         let _ = register(signal, INTERRUPT.clone());
     }
     let _ = register(SIGUSR1, SAVE.clone());
+}
+
+/// Takes a file above the limit of the shell for an error of that file, of any command.
+pub fn outlive_large_files() {
     let _ = register(SIGXFSZ, Arc::default());
 }
 

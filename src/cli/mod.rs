@@ -23,6 +23,7 @@ mod stability;
 mod study;
 mod summary;
 mod threads;
+mod verify;
 
 pub use process::{main, run};
 
@@ -39,10 +40,12 @@ Stage by stage, each from files:
   dgmpm preprocess square.toml --mesh square.h5 --cloud cloud.h5 --out operators.h5
   dgmpm solve square.toml --mesh square.h5 --cloud cloud.h5 --operators operators.h5
 
-After an interruption, or to a later end:
+After an interruption, or to a later end; and whether all files are whole:
   dgmpm resume runs/square
+  dgmpm verify runs/square
 
-Exit codes: 0 done, 2 bad input, 3 the run lost stability, 4 interrupted and saved, 5 output could not be written.";
+Exit codes: 0 done, 2 bad input, 3 the run lost stability, 4 interrupted and saved, 5 output could not be written,
+6 a folder is not whole or has other bits (verify).";
 
 /// ADER Discontinuous Galerkin Material Point Method for fast, large-deformation solid dynamics.
 #[derive(Debug, Parser)]

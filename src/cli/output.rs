@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use std::path::{Path, PathBuf};
 
 /// Where a run's results go, and on how many threads it runs.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct RunArgs {
     /// Folder for the results [default: runs/<scene name>]
     #[arg(long, value_name = "DIR")]

@@ -1,6 +1,6 @@
 //! From the command line of the process to its exit code.
 
-use super::{Cli, print};
+use super::{Cli, interrupt, print};
 use crate::error::Result;
 use crate::file::seal;
 use clap::Parser;
@@ -36,6 +36,7 @@ pub fn main() -> ExitCode {
 /// # Errors
 /// The one message for the user; its exit code is [`crate::Error::exit_code`].
 pub fn run(cli: Cli) -> Result<()> {
+    interrupt::outlive_large_files();
     if cli.trust {
         seal::trust();
     }

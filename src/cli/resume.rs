@@ -6,6 +6,7 @@ use super::threads::{self, start_threads};
 use crate::error::Result;
 use crate::problem::Newest;
 use crate::run::Folder;
+use crate::scene::Scene;
 use std::path::PathBuf;
 
 /// Arguments.
@@ -27,16 +28,21 @@ pub struct Args {
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     args.threads.map_or(Ok(()), start_threads)?;
-    let kernel = args.kernel.as_deref().map(|name| threads::kernel(Some(name))).transpose()?;
-    let folder = Folder::new(&args.run);
+    let scene = |folder: &Folder| Scene::load(&folder.scene(), &args.sets);
+    go_on(&Folder::new(&args.run), args.kernel.as_deref(), scene)
+}
+
+/// Goes on with the run of a folder, with a scene.
+pub fn go_on(folder: &Folder, kernel: Option<&str>, scene: impl FnOnce(&Folder) -> Result<Scene>) -> Result<()> {
+    let kernel = kernel.map(|name| threads::kernel(Some(name))).transpose()?;
     // A folder without a run is not locked, which would make it; and another run may have gone on until the lock was had.
-    Newest::read(&folder)?;
+    Newest::read(folder)?;
     let _lock = folder.lock()?;
-    let newest = Newest::read(&folder)?;
+    let newest = Newest::read(folder)?;
     newest.damaged.iter().for_each(warn);
     let ((time, step), path) = (newest.at(), newest.path.clone());
-    let problem = newest.problem(&folder, &args.sets, kernel)?;
+    let problem = newest.problem_of(folder, scene(folder)?, kernel)?;
     say(&problem.scene.title);
     say(format!("resumed at step {step}, t = {time:.6e} s, from {}", path.display()));
-    solve(problem, &folder)
+    solve(problem, folder)
 }

@@ -2,9 +2,10 @@
 
 use super::args::SceneArgs;
 use super::output::RunArgs;
-use super::pipeline;
+use super::print::say;
+use super::{pipeline, resume};
 use crate::error::Result;
-use crate::problem::Files;
+use crate::problem::{Again, Files};
 
 /// Arguments.
 #[derive(Debug, clap::Args)]
@@ -13,9 +14,26 @@ pub struct Args {
     scene: SceneArgs,
     #[command(flatten)]
     run: RunArgs,
+    /// Go on where the folder has a checkpoint of this scene, otherwise begin: the same command serves again and again
+    #[arg(long, conflicts_with = "force")]
+    resume: bool,
 }
 
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
-    pipeline::run(&args.scene, &Files::default(), None, &args.run)
+    let begin = |run: &RunArgs| pipeline::run(&args.scene, &Files::default(), None, run);
+    if !args.resume {
+        return begin(&args.run);
+    }
+    args.run.start_threads()?;
+    let scene = args.scene.load()?;
+    let folder = args.run.folder(&scene);
+    match Again::look(&scene, &folder)? {
+        Again::Begins { replaces } => begin(&RunArgs { force: replaces, ..args.run.clone() }),
+        Again::GoesOn(scene) => resume::go_on(&folder, args.run.kernel.as_deref(), |_| Ok(*scene)),
+        Again::Done(words) => {
+            say(words);
+            Ok(())
+        }
+    }
 }

@@ -2,9 +2,13 @@
 
 use crate::error::{Error, Result};
 use crate::lane::Kernel;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Threads a core that are still taken for a wish: more are a slip of the pen, and steps wait for the last of them.
 const THREADS_PER_CORE: usize = 4;
+
+/// Whether threads have been started by number.
+static STARTED: AtomicBool = AtomicBool::new(false);
 
 /// Refuses a number of threads that this machine has no use for.
 pub fn check_threads(threads: usize) -> Result<()> {
@@ -21,9 +25,12 @@ pub fn check_threads(threads: usize) -> Result<()> {
     Err(Error::input(what, format!("give a number of threads from 1 to {most}; {cores} use all cores")))
 }
 
-/// Starts so many threads for all that follows.
+/// Starts so many threads for all that follows; the first call of a command counts.
 pub fn start_threads(threads: usize) -> Result<()> {
     check_threads(threads)?;
+    if STARTED.swap(true, Ordering::Relaxed) {
+        return Ok(());
+    }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     pool.map_err(|why| Error::input(format!("cannot start {threads} threads: {why}"), "give a smaller --threads"))
 }

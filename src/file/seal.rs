@@ -83,28 +83,33 @@ pub fn text(text: &str, [open, close]: [&str; 2]) -> String {
     let end = if text.is_empty() || text.ends_with('\n') { "" } else { "\n" };
     let whole = format!("{text}{end}");
     let digits = blake3::hash(whole.as_bytes()).to_hex();
-    format!("{whole}{open}dgmpm-seal {digits}{close}\n")
+    format!("{whole}{}\n", line(open, &digits, close))
 }
 
-/// Where the last line begins, and its words after the mark of a seal.
-fn last_line(text: &[u8]) -> Option<(usize, &[u8])> {
+/// The line of a seal, without its end.
+fn line(open: &str, digits: &str, close: &str) -> String {
+    format!("{open}dgmpm-seal {digits}{close}")
+}
+
+/// Where the last line begins, if it has the mark of a seal.
+fn last_line(text: &[u8]) -> Option<usize> {
     let mark = MARK.trim_ascii_start();
     let line = text.trim_ascii_end();
     let start = line.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
-    let at = line[start..].windows(mark.len()).position(|window| window == mark)?;
-    Some((start, &line[start + at + mark.len()..]))
+    line[start..].windows(mark.len()).any(|window| window == mark).then_some(start)
 }
 
 /// Checks the seal of a text.
 pub fn check_text(text: &[u8]) -> Seal {
-    let Some((start, found)) = last_line(text) else { return Seal::None };
-    let wanted = blake3::hash(&text[..start]).to_hex();
-    if found.get(..DIGITS) == Some(wanted.as_bytes()) { Seal::Whole } else { Seal::Broken }
+    let Some(start) = last_line(text) else { return Seal::None };
+    let (digits, found) = (blake3::hash(&text[..start]).to_hex(), text[start..].trim_ascii_end());
+    let is_whole = |[open, close]: [&str; 2]| found == line(open, &digits, close).as_bytes();
+    if [TOML, GEO, XML].into_iter().any(is_whole) { Seal::Whole } else { Seal::Broken }
 }
 
 /// A text without the line of its seal.
 pub fn unsealed(text: &str) -> &str {
-    last_line(text.as_bytes()).and_then(|(start, _)| text.get(..start)).unwrap_or(text)
+    last_line(text.as_bytes()).and_then(|start| text.get(..start)).unwrap_or(text)
 }
 
 #[cfg(test)]
@@ -112,16 +117,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_byte_of_a_sealed_text_is_held_but_for_those_of_the_comment() {
+    fn each_byte_of_a_sealed_text_is_held() {
         let whole = text("a = 1\nb = 2", ["# ", ""]);
         assert!(whole.starts_with("a = 1\nb = 2\n# dgmpm-seal "), "{whole}");
         assert_eq!(check_text(whole.as_bytes()), Seal::Whole);
         assert_eq!(text(&whole, ["# ", ""]), whole, "sealed twice");
-        for at in 0.."a = 1\nb = 2\n".len() {
+        let mark = whole.find("dgmpm-seal ").unwrap();
+        for at in 0..whole.len() {
             let mut other = whole.clone().into_bytes();
             other[at] ^= 1;
-            assert_eq!(check_text(&other), Seal::Broken, "{at}");
+            // Without its mark a seal is a comment of the user.
+            let wanted = if (mark..mark + "dgmpm-seal ".len()).contains(&at) { Seal::None } else { Seal::Broken };
+            assert_eq!(check_text(&other), wanted, "{at}");
         }
+        assert_eq!(check_text(whole.replace('\n', "\r\n").as_bytes()), Seal::Broken);
+        assert_eq!(check_text(whole.trim_end().as_bytes()), Seal::Whole, "an editor has cut off the end of the line");
         for text in ["", "\n", "a = 1\n", "# dgmpm\n"] {
             assert_eq!(check_text(text.as_bytes()), Seal::None, "{text:?}");
         }

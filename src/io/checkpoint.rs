@@ -3,12 +3,13 @@
 //! The arrays are those of a snapshot, and `part_<name>` with the numbers of whatever lives on beside the state
 //! ([`crate::words::Words`]): survey, report, rules of regrids, observers. The text of the scene is such a part.
 //! Attributes: those of a snapshot; `kernel`, the instruction set; `observed`, whether outputs have seen
-//! the state; `has_snapshot`, whether there was a snapshot of it. A checkpoint has a seal, or is refused.
+//! the state; `has_snapshot`, whether there was a snapshot of it; `threads`, their number, which changes no result. A checkpoint has a seal, or is refused.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::hdf5::Kept;
+use super::pending::check_folder;
 use super::seal::{self, Seal};
 use super::snapshot::{self, Snapshot};
 use super::store::{ArrayRef, Format, Store};
@@ -55,6 +56,7 @@ impl Checkpoint {
             ("kernel", self.kernel.clone()),
             ("observed", word(self.observed)),
             ("has_snapshot", word(self.has_snapshot)),
+            ("threads", rayon::current_num_threads().to_string()),
         ];
         let mut scene = Words::default();
         scene.text(&self.scene);
@@ -62,11 +64,8 @@ impl Checkpoint {
         let names: Vec<(String, &Words)> = all.map(|(name, words)| (format!("{PART}{name}"), words)).collect();
         let arrays = names.iter().map(|(name, words)| (&name[..], vec![words.0.len()], ArrayRef::U64(&words.0)));
         self.snapshot.write_as(&path, FORMAT, attributes, arrays.collect(), Kept::OnDisk)?;
-        let mut all = list(folder)?;
-        all.retain(|(_, other)| *other != path);
-        for (_, old) in &all[..all.len().saturating_sub(KEPT - 1)] {
-            std::fs::remove_file(old).map_err(|why| Error::output(old, why))?;
-        }
+        // A folder that went away in the meantime is the reason of whatever failed.
+        remove_older(folder, &path).or_else(|why| check_folder(folder).and(Err(why)))?;
         Ok(path)
     }
 
@@ -93,6 +92,16 @@ impl Checkpoint {
         let scene = parts.remove(SCENE).unwrap_or_default().saved().text()?;
         Ok(Self { snapshot, scene, kernel, observed: observed?, has_snapshot: has_snapshot?, parts })
     }
+}
+
+/// Removes all checkpoints but the last ones, of which `path` is the newest.
+fn remove_older(folder: &Path, path: &Path) -> Result<()> {
+    let mut all = list(folder)?;
+    all.retain(|(_, other)| other != path);
+    for (_, old) in &all[..all.len().saturating_sub(KEPT - 1)] {
+        std::fs::remove_file(old).map_err(|why| Error::output(old, why))?;
+    }
+    Ok(())
 }
 
 /// The checkpoints of a folder, as (step, file), in the order of steps; none where it is not there.

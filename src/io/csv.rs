@@ -85,6 +85,7 @@ impl Table {
         let length = match self.length {
             Some(length) => length,
             None => {
+                own::begin(&self.path).map_err(std::io::Error::other)?;
                 self.file.set_len(0)?;
                 self.rows.insert_str(0, &self.header);
                 0
@@ -135,10 +136,20 @@ impl Table {
             let what = format!("{} has lost or changed rows that the run had written", self.path.display());
             return Err(Error::input(what, "put the file back, or run the scene again with --force"));
         };
+        own::begin(&self.path)?;
         self.hash = hash;
         self.file.set_len(length).map_err(fail)?;
         self.length = Some(length);
         Ok(())
+    }
+}
+
+impl Drop for Table {
+    /// A table that is complete has its hash on the list of the folder of the run. Where that cannot be written, there is none.
+    fn drop(&mut self) {
+        if self.length.is_some() && self.rows.is_empty() && !removed(&self.file) {
+            let _ = own::finish(&self.path, &self.hash.finalize());
+        }
     }
 }
 

@@ -3,6 +3,8 @@
 use super::hash::Digest;
 use crate::step::{Law, Scheme};
 
+/// The attributes of a fingerprint.
+const KEYS: [&str; 4] = ["mesh_hash", "points_hash", "densities", "laws_hash"];
 /// Points that are the Gauss nodes of their cells, as of RK-DGFEM.
 const NODES: &str = "nodes";
 /// Strains at which a law is asked: small, and such that laws with a yield stress flow.
@@ -35,12 +37,15 @@ impl Fingerprint {
         Self { mesh: mesh.finish(), points: points(scheme), densities: densities.join(", "), laws: laws.finish() }
     }
 
-    /// Its texts, in the order of [`Fingerprint::from_texts`].
-    pub(super) fn texts(&self) -> [String; 4] {
-        [&self.mesh, &self.points, &self.densities, &self.laws].map(Clone::clone)
+    /// What is known, under its names.
+    pub fn attributes(&self) -> Vec<(&'static str, String)> {
+        let texts = [&self.mesh, &self.points, &self.densities, &self.laws].map(Clone::clone);
+        KEYS.into_iter().zip(texts).filter(|(_, text)| !text.is_empty()).collect()
     }
 
-    pub(super) fn from_texts([mesh, points, densities, laws]: [String; 4]) -> Self {
+    /// By the attributes of a file, empty where it has none of a name.
+    pub(super) fn by(attribute: impl Fn(&str) -> String) -> Self {
+        let [mesh, points, densities, laws] = KEYS.map(attribute);
         Self { mesh, points, densities, laws }
     }
 

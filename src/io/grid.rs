@@ -57,6 +57,8 @@ pub struct HighOrderGrid {
     pub point_fields: Vec<Field>,
     /// Fields with a value in each cell.
     pub cell_fields: Vec<Field>,
+    /// Where the fields come from, for a comment.
+    pub about: String,
 }
 
 /// Points with fields, written as vertices.
@@ -66,6 +68,8 @@ pub struct PointCloud {
     pub points: Vec<[f64; 3]>,
     /// Fields with a value at each point.
     pub fields: Vec<Field>,
+    /// Where the fields come from, for a comment.
+    pub about: String,
 }
 
 impl HighOrderGrid {
@@ -76,7 +80,8 @@ impl HighOrderGrid {
             let corners = cell.map(|n| mesh.nodes[n]);
             nodes.iter().map(move |&xi| map::position(&corners, xi)).map(|[x, y]| [x, y, 0.0])
         });
-        Self { degree, points: points.collect(), point_fields: Vec::new(), cell_fields: Vec::new() }
+        let (point_fields, cell_fields) = (Vec::new(), Vec::new());
+        Self { degree, points: points.collect(), point_fields, cell_fields, about: String::new() }
     }
 
     /// Nodes of each cell: (N + 1)^2, and 4 for N = 0.

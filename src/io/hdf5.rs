@@ -16,6 +16,7 @@ use hdf5_metno::types::{FixedUnicode, FloatSize, TypeDescriptor, VarLenAscii, Va
 use super::pending::{Pending, check_folder};
 use super::regular;
 use super::seal::{self, Seal};
+use crate::built;
 use crate::error::{Error, Place, Result};
 
 /// Bytes per chunk: large enough for the disk, small enough for HDF5's cache of 1 MiB.
@@ -160,6 +161,15 @@ pub fn put_attribute(group: &h5::Group, name: &str, text: &str) -> h5::Result<()
         length if length <= LONG => put_fixed_attribute::<LONG>(group, name, text),
         _ => group.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&variable(text)?),
     }
+}
+
+/// The attributes of the program that wrote a file, and of its commit.
+pub const PROGRAM: [&str; 2] = ["program", "commit"];
+
+/// Writes which program makes the file.
+pub fn put_program(group: &h5::Group) -> h5::Result<()> {
+    let texts = [built::PROGRAM, built::commit()];
+    PROGRAM.into_iter().zip(texts).try_for_each(|(name, text)| put_attribute(group, name, text))
 }
 
 fn put_fixed_attribute<const N: usize>(group: &h5::Group, name: &str, text: &str) -> h5::Result<()> {

@@ -170,6 +170,12 @@ mod tests {
     }
 
     #[test]
+    fn a_mark_of_the_byte_order_and_line_ends_of_windows_change_nothing() {
+        let plain = read("t [s],p [Pa]\n0,1\n2,3\n", 1).unwrap();
+        assert_eq!(read("\u{feff}t [s],p [Pa]\r\n0,1\r\n2,3\r\n", 1).unwrap(), plain);
+    }
+
+    #[test]
     fn two_rows_of_one_time_are_a_jump() {
         let table = read("t,p\n0,0\n1,4\n1,8\n2,8\n", 1).unwrap();
         assert_eq!([0.5, 1.0, 1.5].map(|t| table.at(t, 0)), [2.0, 8.0, 8.0]);

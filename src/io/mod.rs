@@ -23,6 +23,7 @@ pub mod operators_file;
 pub mod own;
 pub mod pending;
 pub mod points;
+pub mod provenance;
 pub mod pvd;
 pub mod snapshot;
 pub mod store;

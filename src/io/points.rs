@@ -224,7 +224,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("points.vtu");
         let points = vec![[0.1, 0.2, 0.0], [1.0 / 3.0, 2.0, 0.0], [-5e-300, 7.0, 0.0]];
-        write_points(&path, &PointCloud { points: points.clone(), fields: vec![] }).unwrap();
+        write_points(&path, &PointCloud { points: points.clone(), ..PointCloud::default() }).unwrap();
         assert_eq!(read(&path).unwrap(), points.iter().map(|x| [x[0], x[1]]).collect::<Vec<_>>());
     }
 
@@ -304,7 +304,11 @@ mod tests {
             Field::new("velocity", Kind::Vector, vec![1.0 / 3.0, -2e5, 0.0]),
             Field::new("damage", Kind::Scalar, vec![0.125]),
         ];
-        write_points(&vtu, &PointCloud { points: vec![[0.5, 0.25, 0.0]], fields: fields.clone() }).unwrap();
+        write_points(
+            &vtu,
+            &PointCloud { points: vec![[0.5, 0.25, 0.0]], fields: fields.clone(), about: "a -- b".to_owned() },
+        )
+        .unwrap();
         assert_eq!(read_with_fields(&vtu).unwrap(), (vec![[0.5, 0.25]], fields.clone()));
         let names = "x,y,deformation_11,velocity_1,deformation_12,deformation_21,deformation_22,velocity_2,damage";
         std::fs::write(&csv, format!("{names}\n0.5,0.25,1.1,{},0.2,0.3,0.9,-2e5,0.125\n", 1.0 / 3.0)).unwrap();

@@ -6,6 +6,7 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
 use super::pending::write_text;
+use crate::built;
 use crate::error::{Error, Result};
 
 /// Writes a series: (time, file) in rising order of time. Files in the folder of the series, or below it, are named
@@ -26,7 +27,7 @@ pub fn write_series(path: &Path, files: &[(f64, PathBuf)]) -> Result<()> {
     let fail = |e: &dyn std::fmt::Display| Error::output(path, e);
     written.map_err(|e| fail(&e))?;
     let text = String::from_utf8(xml.into_inner()).map_err(|e| fail(&e))?;
-    write_text(path, &(text + "\n"))
+    write_text(path, &(text + "\n" + &built::comment()))
 }
 
 fn entry(xml: &mut Writer<Vec<u8>>, series: &Path, time: f64, file: &Path) -> std::io::Result<()> {

@@ -8,19 +8,19 @@
 //! conditions, likewise; `received` (groups, 3), what the body has received through each boundary group since the run began (impulse in
 //! N s/m and work in J/m), where an output asks for it; `corrected`, `rescued` (cells), what a limiter and the rescue did, where the run has one. Attributes
 //! `mesh`, `cloud`: the files of the run folder that the state lives on; `mesh_hash`, `points_hash`, `densities`, `laws_hash`: what it was
-//! made on ([`Fingerprint`]), and `program` by which.
+//! made on ([`Fingerprint`]); `program`, `commit`, `kernel`, `scene_hash`, `operators_hash`: by which program it was made, and from what
+//! ([`Provenance`]).
 
 use std::path::{Path, PathBuf};
 
 use super::fingerprint::Fingerprint;
+use super::hash::Digest;
 use super::hdf5;
+use super::provenance::Provenance;
 use super::store::{ArrayRef, Format, Store, write_kept};
 use crate::error::{Error, Result};
 use crate::state::UNKNOWNS;
 use crate::tensor::AXES;
-
-/// The attributes of a fingerprint.
-const HASHES: [&str; 4] = ["mesh_hash", "points_hash", "densities", "laws_hash"];
 
 /// The format of snapshots.
 pub const FORMAT: Format = Format { name: "dgmpm snapshot", version: 1, remedy: "write it again by `dgmpm solve`" };
@@ -56,6 +56,8 @@ pub struct Snapshot {
     pub grid: GridFiles,
     /// What it was made on; empty texts of files of earlier versions.
     pub made_on: Fingerprint,
+    /// By which program it was made, and from what.
+    pub provenance: Provenance,
 }
 
 /// Names of the files of a grid in the folder of a run.
@@ -102,6 +104,16 @@ impl Snapshot {
     /// How many numbers each cell has in [`Snapshot::unheld`]; 0 if it is empty.
     pub fn unheld_stride(&self) -> usize {
         if self.unheld.is_empty() { 0 } else { 2 * (self.degree + 1).pow(2) }
+    }
+
+    /// A hash of the state, of its time and step, to the bit; not of what corrections did in the last step, which not all snapshots have.
+    pub fn bits(&self) -> String {
+        let mut all = Digest::new();
+        all.count(self.step).count(self.degree).reals([self.time].into_iter());
+        for values in [&self.u, &self.displacement, &self.unheld, &self.internal, &self.boundary, &self.received] {
+            all.reals(values.iter().copied());
+        }
+        all.finish()
     }
 
     fn fault(&self) -> Option<String> {
@@ -177,8 +189,8 @@ impl Snapshot {
         arrays.extend(more_arrays);
         let mut attributes = more_attributes;
         attributes.extend([("mesh", self.grid.mesh.clone()), ("cloud", self.grid.cloud.clone())]);
-        attributes.push(("program", format!("dgmpm {}", env!("CARGO_PKG_VERSION"))));
-        attributes.extend(HASHES.into_iter().zip(self.made_on.texts()).filter(|(_, text)| !text.is_empty()));
+        attributes.extend(self.provenance.attributes());
+        attributes.extend(self.made_on.attributes());
         write_kept(path, format, &attributes, &arrays, kept)
     }
 
@@ -202,7 +214,8 @@ impl Snapshot {
         let name = |key: &str, usual: String| store.attribute(key).map_or(usual, str::to_owned);
         let GridFiles { mesh, cloud } = GridFiles::default();
         let grid = GridFiles { mesh: name("mesh", mesh), cloud: name("cloud", cloud) };
-        let made_on = Fingerprint::from_texts(HASHES.map(|key| name(key, String::new())));
+        let made_on = Fingerprint::by(|key| name(key, String::new()));
+        let provenance = Provenance::by(|key| name(key, String::new()));
         // Files of earlier versions have no `unheld`, and those of runs without such a memory no `boundary`.
         let knows = |name: &str| store.names().any(|known| known == name);
         let known = [knows("unheld"), knows("boundary"), knows("corrected") && knows("rescued"), knows("received")];
@@ -216,6 +229,7 @@ impl Snapshot {
         Ok(Self {
             grid,
             made_on,
+            provenance,
             corrected,
             rescued,
             unheld,

@@ -1,4 +1,4 @@
-//! Named arrays and text attributes in one sealed HDF5 file, with the name and version of the format. Mesh, cloud and
+//! Named arrays and text attributes in one sealed HDF5 file, with the name and version of the format and of the program. Mesh, cloud and
 //! snapshot files are stores. Any other data that has to outlive a process may be a store too.
 
 use std::collections::BTreeMap;
@@ -7,6 +7,7 @@ use std::path::Path;
 
 use super::hdf5::{self, Reader, Values};
 use super::regular;
+use crate::built;
 use crate::error::{Error, Result};
 
 /// The format of a file, and the command that makes the file again.
@@ -66,6 +67,9 @@ pub(super) fn write_kept(
     kept: hdf5::Kept,
 ) -> Result<()> {
     let mut all: BTreeMap<String, String> = attributes.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect();
+    for (name, text) in hdf5::PROGRAM.into_iter().zip([built::PROGRAM, built::commit()]) {
+        all.entry(name.to_owned()).or_insert_with(|| text.to_owned());
+    }
     all.insert(FORMAT.to_owned(), format.name.to_owned());
     all.insert(VERSION.to_owned(), format.version.to_string());
     hdf5::create_sealed(path, kept, |file| {
@@ -208,8 +212,9 @@ pub fn is_store(path: &Path) -> bool {
         return false;
     }
     let mut head = Vec::new();
-    // Each name of a format begins so.
+    // Each name of a format begins so; the version of the program, which exports have too, is a number.
     let mark = b"dgmpm ";
+    let is_format = |text: &[u8]| text.strip_prefix(mark).is_some_and(|name| name.iter().all(u8::is_ascii_alphabetic));
     let read = std::fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
-    read.is_ok() && head.windows(mark.len()).any(|window| window == mark)
+    read.is_ok() && head.windows(mark.len() + 1).any(is_format)
 }

@@ -34,7 +34,7 @@ pub fn write_grid(path: &Path, grid: &HighOrderGrid) -> Result<()> {
     piece.fields("CellData", &grid.cell_fields);
     piece.points(&grid.points);
     piece.cells(grid.cells(), grid.nodes_per_cell(), kind);
-    write_text(path, &piece.end())
+    write_text(path, &piece.end(&grid.about))
 }
 
 /// Writes points as vertices (VTK type 1).
@@ -45,7 +45,7 @@ pub fn write_points(path: &Path, cloud: &PointCloud) -> Result<()> {
     piece.fields("PointData", &cloud.fields);
     piece.points(&cloud.points);
     piece.cells(count, 1, VERTEX);
-    write_text(path, &piece.end())
+    write_text(path, &piece.end(&cloud.about))
 }
 
 /// The text of a file with one piece.
@@ -59,8 +59,12 @@ impl Piece {
         ))
     }
 
-    fn end(mut self) -> String {
+    fn end(mut self, about: &str) -> String {
         self.0.push_str("</Piece></UnstructuredGrid></VTKFile>\n");
+        if !about.is_empty() {
+            // Two hyphens would end the comment for some readers.
+            self.0 += &format!("<!-- {} -->\n", about.replace("--", "-"));
+        }
         seal::text(&self.0, seal::XML)
     }
 

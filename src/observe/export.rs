@@ -41,7 +41,7 @@ pub fn points(
     all.push(grid::Field::new("cell", Kind::Scalar, cells.collect()));
     let is_virtual = |p: usize| f64::from(u8::from(virtual_points.get(p) == Some(&true)));
     all.push(grid::Field::new("virtual", Kind::Scalar, (0..cloud.len()).map(is_virtual).collect()));
-    PointCloud { points: positions, fields: all }
+    PointCloud { points: positions, fields: all, about: String::new() }
 }
 
 /// Fields at the material points.

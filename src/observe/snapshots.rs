@@ -4,6 +4,7 @@ use super::{NewGrid, Observer, Schedule, View};
 use crate::error::Error;
 use crate::io::fingerprint::Fingerprint;
 use crate::io::pending;
+use crate::io::provenance::Provenance;
 use crate::io::snapshot::{self, GridFiles, Snapshot};
 use crate::state::{State, UNKNOWNS};
 use crate::step::Scheme;
@@ -100,6 +101,7 @@ pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
         boundary,
         received,
         made_on,
+        provenance: Provenance::of(scheme),
         ..Snapshot::default()
     }
 }

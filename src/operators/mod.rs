@@ -70,6 +70,8 @@ pub struct Operators {
     pub points: Option<Points>,
     /// The projection onto gradients; `None` if the scene has no control of the curl.
     pub curl_free: Option<CurlFree>,
+    /// Hash of the input that the matrices were made from, for files that say where a state comes from; empty where nobody has computed it.
+    pub key: String,
 }
 
 /// The parts of the operators that a method needs.
@@ -99,7 +101,13 @@ impl Operators {
         let geometry = Geometry::new(mesh, &blocks);
         let points = needs.sampling.zip(stored.points).map(|(s, pool)| Points::new(mesh, &blocks, &line, s, pool));
         let curl_free = stored.curl_free.map(|pool| CurlFree::new(pool, mesh, &blocks, &line));
-        Self { degree: needs.degree, line, blocks, geometry, points, curl_free }
+        Self { degree: needs.degree, line, blocks, geometry, points, curl_free, key: String::new() }
+    }
+
+    /// With the hash of their input.
+    #[must_use]
+    pub fn with_key(self, key: String) -> Self {
+        Self { key, ..self }
     }
 
     /// (N+1)^2.

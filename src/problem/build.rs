@@ -1,5 +1,6 @@
 //! Where names become types: from a scene to mesh, laws, conditions, sources, time integration and scheme.
 
+use super::differences;
 use crate::boundary;
 use crate::cloud::Cloud;
 use crate::contact::Pairs;
@@ -150,7 +151,8 @@ impl Scene {
         let scheme = Scheme::new(operators, laws, self.integration(), flux, boundaries)?;
         let scheme = scheme.with_pairings(&pairings).map_err(|why| self.at_cut(why))?;
         let scheme = scheme.with_sources(sources).with_corrections(self.limiters()).with_kernel(kernel);
-        let scheme = scheme.with_rescue(self.limiter.values.boolean("rescue").then(Rescue::default));
+        let mut scheme = scheme.with_rescue(self.limiter.values.boolean("rescue").then(Rescue::default));
+        scheme.scene = differences::hash(self);
         // Constants have no curl.
         match curl.filter(|_| self.scheme.degree > 0) {
             Some(control) => scheme.with_curl(control),

@@ -1,5 +1,6 @@
-//! What differs between the scene of a checkpoint and the one that a run is resumed with.
+//! What differs between the scene of a checkpoint and the one that a run is resumed with, and the hash of what may not.
 
+use crate::io::hash::Digest;
 use crate::scene::Scene;
 use serde_json::Value;
 
@@ -8,14 +9,29 @@ const FREE: [&str; 4] = ["title", "end", "watch", "checkpoint"];
 
 /// The first key that differs and may not, with both values; none where there is none.
 pub(super) fn difference(old: &Scene, new: &Scene) -> Option<String> {
-    let of = |scene: &Scene| match serde_json::to_value(scene) {
+    first("", &fixed(old), &fixed(new))
+}
+
+/// All that a scene says and may not change.
+fn fixed(scene: &Scene) -> Value {
+    match serde_json::to_value(scene) {
         Ok(Value::Object(mut all)) => {
             FREE.iter().for_each(|key| drop(all.remove(*key)));
             Value::Object(all)
         }
         other => other.unwrap_or(Value::Null),
-    };
-    first("", &of(old), &of(new))
+    }
+}
+
+/// The scene as the folder of a run has it, with mesh and points in files: what it says is the same wherever these came from.
+pub(super) fn in_folder(scene: &Scene) -> Option<Scene> {
+    Scene::parse(&scene.portable_toml(true, true), scene.path(), &[]).ok()
+}
+
+/// The hash of what a scene says, but for mesh and points, which have hashes of their own, and for keys that may change when a run is
+/// resumed. Empty for a scene that has no text to be parsed again.
+pub(super) fn hash(scene: &Scene) -> String {
+    in_folder(scene).map_or_else(String::new, |scene| Digest::new().text(&fixed(&scene).to_string()).finish())
 }
 
 fn first(key: &str, old: &Value, new: &Value) -> Option<String> {

@@ -5,6 +5,7 @@ use crate::basis::Lagrange;
 use crate::cloud::Cloud;
 use crate::error::{Error, Result};
 use crate::io::grid::Field as Values;
+use crate::io::provenance::Provenance;
 use crate::io::snapshot::{GridFiles, Snapshot};
 use crate::io::{mesh_file, pvd, snapshot, vtu, xdmf};
 use crate::observe::{Field, Solution, export};
@@ -43,6 +44,8 @@ struct Shown<'a> {
     solution: &'a Solution<'a>,
     /// The fields of the grid, and those of the cells at this time.
     cell_fields: Vec<Values>,
+    /// Where the snapshot comes from.
+    from: &'a Provenance,
 }
 
 impl Export {
@@ -118,7 +121,8 @@ impl Export {
             let cell_fields =
                 grid_of_run.cell_fields.iter().cloned().chain(export::treated_fields(&snapshot)).collect();
             let (time, body) = (snapshot.time, &grid_of_run.body);
-            show(Shown { step: *step, time, body, is_new, solution: &solution, cell_fields })?;
+            let from = &snapshot.provenance;
+            show(Shown { step: *step, time, body, is_new, solution: &solution, cell_fields, from })?;
             last = Some(grid_of_run);
         }
         Ok(())
@@ -136,17 +140,16 @@ impl Export {
     /// A snapshot that does not belong to the run; a file that cannot be written.
     pub fn vtu(&self) -> Result<()> {
         let (mut grids, mut points) = (Vec::new(), Vec::new());
-        self.each(|Shown { step, time, body, solution, cell_fields, .. }| {
+        self.each(|Shown { step, time, body, solution, cell_fields, from, .. }| {
             let (grid_path, point_path) =
                 (self.out.join(format!("grid_{step:06}.vtu")), self.out.join(format!("points_{step:06}.vtu")));
             let fields = self.fields(solution);
             let mut grid = export::grid(&body.mesh, solution, &fields);
-            grid.cell_fields = cell_fields;
+            (grid.cell_fields, grid.about) = (cell_fields, from.line());
             vtu::write_grid(&grid_path, &grid)?;
-            vtu::write_points(
-                &point_path,
-                &export::points(&body.mesh, &body.cloud, &body.virtual_points, solution, &fields),
-            )?;
+            let mut cloud = export::points(&body.mesh, &body.cloud, &body.virtual_points, solution, &fields);
+            cloud.about = from.line();
+            vtu::write_points(&point_path, &cloud)?;
             grids.push((time, grid_path));
             points.push((time, point_path));
             Ok(())
@@ -164,7 +167,7 @@ impl Export {
         xdmf::write_mesh(&self.out.join("mesh.xdmf"), &first)?;
         xdmf::write_boundary(&self.out.join("boundary.xdmf"), &first)?;
         let mut series: Option<xdmf::Series> = None;
-        self.each(|Shown { time, body, is_new, solution, cell_fields, .. }| {
+        self.each(|Shown { time, body, is_new, solution, cell_fields, from, .. }| {
             let grid = export::grid(&body.mesh, solution, &self.fields(solution));
             let series = match &mut series {
                 Some(series) => {
@@ -173,7 +176,11 @@ impl Export {
                     }
                     series
                 }
-                none => none.insert(xdmf::Series::create(&self.out.join("series.xdmf"), &grid)?),
+                none => {
+                    let series = none.insert(xdmf::Series::create(&self.out.join("series.xdmf"), &grid)?);
+                    series.label(from)?;
+                    series
+                }
             };
             series.push(time, &grid.point_fields, &cell_fields)
         })?;

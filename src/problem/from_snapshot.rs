@@ -49,6 +49,7 @@ impl Scene {
     /// A snapshot of another grid, degree, law or time.
     pub(super) fn state_of_snapshot(&self, path: &Path, scheme: &Scheme) -> Result<State> {
         let snapshot = Snapshot::read(path)?;
+        self.check_time(&snapshot)?;
         self.state_of(&snapshot, scheme)
     }
 
@@ -81,7 +82,16 @@ impl Scene {
         Ok(unpacked(snapshot, scheme, self.components()))
     }
 
-    /// Whether a snapshot is of a mesh of so many cells, of the degree and within the time of the scene.
+    /// Whether a run that begins at a snapshot has a step to do.
+    pub(super) fn check_time(&self, snapshot: &Snapshot) -> Result<()> {
+        if snapshot.time.is_nan() || snapshot.time >= self.end {
+            let what = format!("the snapshot is at {:e} s, and the run ends at {:e} s", snapshot.time, self.end);
+            return Err(self.error("initial.snapshot", what, "give a later time.end"));
+        }
+        Ok(())
+    }
+
+    /// Whether a snapshot is of a mesh of so many cells and of the degree of the scene, and has what its outputs ask for.
     pub(super) fn check_snapshot(&self, snapshot: &Snapshot, cells: usize) -> Result<()> {
         let fail = |what: String, remedy: &str| self.error("initial.snapshot", what, remedy);
         if snapshot.cells() != cells || snapshot.degree != self.scheme.degree {
@@ -91,10 +101,6 @@ impl Scene {
                 self.scheme.degree
             );
             return Err(fail(what, "give the mesh of that run, or bring it over by `dgmpm regrid`"));
-        }
-        if snapshot.time.is_nan() || snapshot.time >= self.end {
-            let what = format!("the snapshot is at {:e} s, and the run ends at {:e} s", snapshot.time, self.end);
-            return Err(fail(what, "give a later time.end"));
         }
         if self.wants_displacement() && snapshot.displacement.is_empty() {
             let what = "an output asks for the displacement, which the snapshot lacks".to_owned();

@@ -3,7 +3,8 @@
 use super::{Body, Files, Problem};
 use crate::error::{Error, Place, Result};
 use crate::io::cloud_file::{self, Extras};
-use crate::io::{mesh_file, pending, seal};
+use crate::io::snapshot::Snapshot;
+use crate::io::{mesh_file, pending, read_mesh, regular, seal};
 use crate::observe::{Solution, export};
 use crate::operators::Certificate;
 use crate::registry::grids::copy;
@@ -63,9 +64,54 @@ pub fn check_folder(
     }
 }
 
+/// Refuses a scene whose mesh, points or files are not those that the run in a folder began with.
+///
+/// # Errors
+/// The file that differs, at the key that names it.
+pub(super) fn check_same_input(scene: &Scene, body: &Body, folder: &Folder) -> Result<()> {
+    let fail = |key: &str, name: &str| {
+        let what = format!("this is not what the run in {} began with: its {name} differs", folder.root.display());
+        Err(scene.error(key, what, "give another folder by --out, or the input of that run"))
+    };
+    if mesh_file::read_mesh(&folder.mesh())? != body.mesh {
+        return fail("mesh", "mesh.h5");
+    }
+    if cloud_file::read_with(&folder.cloud(), &body.mesh)?.0 != body.cloud {
+        return fail("cloud", "cloud.h5");
+    }
+    let text = |path: &Path| {
+        let text =
+            regular::text(path, u64::MAX).map_err(|why| Error::at(Place::file(path), why, "give a text file"))?;
+        Ok::<_, Error>(seal::unsealed(&text).trim_end().to_owned())
+    };
+    for Source { key, path, target } in sources(scene, &Files::default(), None, folder) {
+        let name = target.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let same = match &name[..] {
+            "mesh.h5" | "cloud.h5" => true,
+            "initial.h5" => Snapshot::read(&path)?.bits() == Snapshot::read(&target)?.bits(),
+            _ if name.ends_with(".h5") => read_mesh(&path)? == read_mesh(&target)?,
+            _ => text(&path)? == text(&target)?,
+        };
+        if !same {
+            return fail(&key, &name);
+        }
+    }
+    Ok(())
+}
+
 /// The error of a file that is not the run's to replace.
 pub(super) fn foreign(folder: &Folder, name: &str) -> Error {
     let path = folder.root.join(name);
+    if !folder.has_list() && folder.scene().is_file() && folder.summary().is_file() {
+        let what = format!(
+            "{} is in the way: the folder has no list of files (.dgmpm), as runs of earlier versions",
+            path.display()
+        );
+        return Error::input(
+            what,
+            "give another folder by --out; or remove this one yourself, if nothing in it is needed",
+        );
+    }
     let what =
         format!("{} is in the way: it is not on the list of the files that dgmpm has made there", path.display());
     Error::input(what, "give another folder by --out, or move the file (also --force leaves files of others alone)")

@@ -13,6 +13,7 @@
 //! # Ok::<(), dgmpm::Error>(())
 //! ```
 
+mod again;
 mod body;
 mod build;
 pub mod certificates;
@@ -47,7 +48,9 @@ mod start;
 mod stopped;
 mod store;
 mod summary;
+mod verify;
 
+pub use again::Again;
 pub use body::{Body, Files};
 pub use checkpoints::{Checkpoints, Resumed};
 pub use cost::Cost;
@@ -63,9 +66,11 @@ pub use solve::Solve;
 pub use stopped::{Stopped, changes};
 pub use store::{Recent, Store};
 pub use summary::Outcome;
+pub use verify::{Repeated, kernel_of_run, repeat};
 
 use crate::built;
 use crate::error::{Error, Result};
+use crate::io::operators_file;
 use crate::io::snapshot::GridFiles;
 use crate::lane::Kernel;
 use crate::mesh::Mesh;
@@ -232,7 +237,10 @@ impl Body {
     /// A cell whose points cannot carry the degree; a boundary that is not wholly tagged.
     pub fn operators(&self, scene: &Scene) -> Result<Operators> {
         let places = self.places(scene);
-        Operators::build(&self.mesh, &scene.links(&self.mesh)?, &self.material, &scene.needs(&places))
+        let needs = scene.needs(&places);
+        let operators = Operators::build(&self.mesh, &scene.links(&self.mesh)?, &self.material, &needs)?;
+        let periodic = scene.periodic_groups(&self.mesh);
+        Ok(operators.with_key(operators_file::key(&self.mesh, &periodic, &self.material, &needs)))
     }
 }
 

@@ -68,7 +68,7 @@ impl Pause for Regrids<'_> {
     }
 
     fn save(&mut self, to: &mut Words) -> Result<()> {
-        to.count(self.schedules.len());
+        to.count(self.schedules.len()).count(self.start);
         for (schedule, fired) in self.schedules.iter().zip(&self.fired) {
             to.count(schedule.served()).count(*fired);
         }
@@ -88,6 +88,8 @@ impl Pause for Regrids<'_> {
                 "resume with those rules",
             ));
         }
+        // The bound on `refine` counts from the first grid of the run, and not from the one that it goes on with.
+        self.start = from.count()?;
         for (schedule, fired) in self.schedules.iter_mut().zip(&mut self.fired) {
             schedule.resume(from.count()?);
             *fired = from.count()?;

@@ -5,7 +5,7 @@ use super::{Body, Problem, Resumed, Setup};
 use crate::error::{Error, Result};
 use crate::io::checkpoint::{self, Checkpoint};
 use crate::io::fingerprint::Fingerprint;
-use crate::io::pending;
+use crate::io::{pending, seal};
 use crate::lane::Kernel;
 use crate::run::Folder;
 use crate::scene::Scene;
@@ -58,13 +58,23 @@ impl Newest {
     /// # Errors
     /// A scene in which a key differs that may not; files of the folder that are not those of the run; a run that is at its end.
     pub fn problem(self, folder: &Folder, sets: &[String], kernel: Option<Kernel>) -> Result<Problem> {
+        let scene = Scene::load(&folder.scene(), sets)?;
+        self.problem_of(folder, scene, kernel)
+    }
+
+    /// The same with a scene, whose files are those of the folder.
+    ///
+    /// # Errors
+    /// As for [`Newest::problem`].
+    pub fn problem_of(self, folder: &Folder, scene: Scene, kernel: Option<Kernel>) -> Result<Problem> {
         let Checkpoint { snapshot, scene: text, kernel: name, observed, has_snapshot, parts } = self.checkpoint;
-        let (old, scene) = (Scene::parse(&text, &folder.scene(), &[])?, Scene::load(&folder.scene(), sets)?);
+        let old = Scene::parse(&text, &folder.scene(), &[])?;
         if let Some(what) = difference(&old, &scene) {
             let remedy = "only title, time.end, [watch] and [checkpoint] may change; for another scene use `dgmpm run`";
             return Err(Error::input(format!("the checkpoint is of another scene: {what}"), remedy));
         }
-        if snapshot.time >= scene.end {
+        // A run that was killed at its end has its last rows still before it.
+        if snapshot.time > scene.end || snapshot.time == scene.end && folder.is_done() {
             let what = format!("the run is at its end, {:e} s", snapshot.time);
             return Err(scene.error("time.end", what, "give a later end by --set time.end=.."));
         }
@@ -82,8 +92,9 @@ impl Newest {
         })?;
         let observed_at = observed.then_some(snapshot.step);
         folder.cut_back(snapshot.step, observed && has_snapshot)?;
-        if !sets.is_empty() {
-            pending::write_text(&folder.scene(), &scene.to_toml())?;
+        let wanted = seal::text(&scene.to_toml(), seal::TOML);
+        if std::fs::read_to_string(folder.scene()).is_ok_and(|there| there != wanted) {
+            pending::write_text(&folder.scene(), &wanted)?;
         }
         Ok(Problem { files: snapshot.grid, resumed: Some(Resumed { parts, observed: observed_at }), ..problem })
     }

@@ -50,6 +50,7 @@ impl Scene {
     pub fn check_start(&self, mesh: &Mesh) -> Result<()> {
         if let Some(path) = &self.initial.snapshot {
             let snapshot = Snapshot::read(&self.existing("initial.snapshot", path)?)?;
+            self.check_time(&snapshot)?;
             return self.check_snapshot(&snapshot, mesh.cells.len());
         }
         if self.initial.from_cloud {

@@ -35,7 +35,7 @@ impl Store<'_> {
             match operators_file::read(path, &key, parts, &needs) {
                 Ok(Some((blocks, stored))) => {
                     let from = format!("matrices reused from {}", path.display());
-                    return Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), from));
+                    return Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored).with_key(key), from));
                 }
                 Ok(None) => notes.push(format!("{} belongs to other mesh, cloud, degree or method", path.display())),
                 Err(_) => notes.push(format!("{} is damaged", path.display())),
@@ -49,7 +49,7 @@ impl Store<'_> {
         let stored = Stored::build(&body.mesh, &blocks, &line, &needs)?;
         operators_file::write(self.write, &key, &blocks, &stored, &body.certificates)?;
         notes.push(format!("matrices written to {}", self.write.display()));
-        Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored), notes.join("; ")))
+        Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored).with_key(key), notes.join("; ")))
     }
 }
 
@@ -76,10 +76,10 @@ impl Recent {
             Some((_, stored)) => stored,
             None => Stored::build(&body.mesh, &blocks, &line, &needs)?,
         };
-        self.0.push_back((key, stored.clone()));
+        self.0.push_back((key.clone(), stored.clone()));
         if self.0.len() > KEPT {
             self.0.pop_front();
         }
-        Ok(Operators::assemble(&body.mesh, line, blocks, &needs, stored))
+        Ok(Operators::assemble(&body.mesh, line, blocks, &needs, stored).with_key(key))
     }
 }

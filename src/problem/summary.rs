@@ -5,9 +5,12 @@ use super::effects::{self, effects};
 use crate::error::Result;
 use crate::exact::{Errors, Exact, errors};
 use crate::format::{Row, row};
+use crate::io::fingerprint::Fingerprint;
 use crate::io::pending;
+use crate::io::provenance::Provenance;
 use crate::quantity::Measured;
 use crate::run::{Folder, Report, norms};
+use crate::step::Scheme;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
@@ -75,12 +78,20 @@ impl<'a> Outcome<'a> {
         all.insert("norms".to_owned(), json!(norms(scheme, state, &body.material)));
         all.insert("kernel".to_owned(), json!(format!("{:?}", scheme.kernel).to_lowercase()));
         all.insert("status".to_owned(), json!(status));
+        all.insert("provenance".to_owned(), provenance(scheme));
         if let Some(loss) = loss {
             all.insert("loss".to_owned(), loss);
         }
         let text = format!("{:#}\n", Value::Object(all));
         pending::write_text(&folder.summary(), &text)
     }
+}
+
+/// What made the results, and from what; the number of threads stands beside it.
+fn provenance(scheme: &Scheme) -> Value {
+    let (made_on, from) = (Fingerprint::of(scheme), Provenance::of(scheme));
+    let all = from.attributes().into_iter().chain(made_on.attributes());
+    Value::Object(all.map(|(key, text)| (key.to_owned(), json!(text))).collect())
 }
 
 fn error_json(errors: &Errors) -> Value {

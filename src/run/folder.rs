@@ -1,6 +1,6 @@
 //! The folder of a run: which file lies where.
 
-use super::Lock;
+use super::lock::{self, Lock};
 use crate::error::Error;
 use crate::io::{own, pending};
 use std::path::{Path, PathBuf};
@@ -86,6 +86,11 @@ impl Folder {
         own::read(&self.root).into_iter().filter(there).collect()
     }
 
+    /// Whether dgmpm keeps a list of its files there: the folder is that of a run of this version.
+    pub fn has_list(&self) -> bool {
+        self.root.join(own::LIST).is_file()
+    }
+
     /// Files under names that a run writes to, and that are there without being on the list: files of the user.
     pub fn foreign(&self) -> Vec<String> {
         let own = own::read(&self.root);
@@ -123,6 +128,17 @@ impl Folder {
     /// Another run has it; a folder that cannot be made or written to.
     pub fn lock(&self) -> Result<Lock, Error> {
         Lock::take(&self.root)
+    }
+
+    /// Whether the run in the folder came to its end, with all its rows, by its summary.
+    pub fn is_done(&self) -> bool {
+        let text = std::fs::read_to_string(self.summary()).unwrap_or_default();
+        serde_json::from_str::<serde_json::Value>(&text).is_ok_and(|summary| summary["status"] == "done")
+    }
+
+    /// Whether a run is writing into the folder.
+    pub fn is_taken(&self) -> bool {
+        lock::is_taken(&self.root)
     }
 
     /// Refuses a folder with results of an earlier run; changes nothing.
@@ -186,6 +202,9 @@ impl Folder {
                 let path = self.root.join(&name);
                 std::fs::remove_file(&path).map_err(|why| Error::output(&path, why))?;
             }
+        }
+        if self.root.join(own::LIST).exists() {
+            own::shorten(&self.root)?;
         }
         std::fs::create_dir_all(self.snapshots()).map_err(|why| Error::output(&self.root, why))
     }

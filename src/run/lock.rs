@@ -39,6 +39,12 @@ impl Lock {
     }
 }
 
+/// Whether a run is writing into a folder; looks, and writes nothing.
+pub(super) fn is_taken(root: &Path) -> bool {
+    let file = File::open(root.join(LIST));
+    file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
+}
+
 impl Drop for Lock {
     fn drop(&mut self) {
         // Closing the file is not enough: a process that another thread is just starting shares it until its program begins.

@@ -10,6 +10,7 @@ mod rows;
 mod saved;
 mod treated;
 mod watch;
+mod whole;
 
 pub use folder::Folder;
 pub use keep::{Keep, Moment};
@@ -19,6 +20,7 @@ pub use norms::norms;
 pub use report::{Report, dofs, peak_memory_mib};
 pub use treated::Treated;
 pub use watch::{Limits, Watch};
+pub use whole::Whole;
 
 use crate::built;
 use crate::error::Error;

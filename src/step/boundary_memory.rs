@@ -118,6 +118,12 @@ impl Scheme {
     /// The memory of the conditions, in the order of [`Scheme::points_with_memory`].
     pub fn boundary_memory_of(&self, state: &State) -> Vec<f64> {
         let (mut out, mut numbers) = (Vec::new(), state.boundary.clone());
+        if numbers.len() != self.boundary_memory.len() {
+            // A state that has not been stepped yet, such as that of a run whose outputs cannot be made.
+            let mut start = State::default();
+            self.set_boundary_memory(&mut start, &[]);
+            numbers = start.boundary;
+        }
         self.each_point_with_memory(|_, at| {
             let of_block = &mut numbers[self.boundary_memory.range(at[0])];
             out.extend_from_slice(self.boundary_memory.of_point(of_block, at));

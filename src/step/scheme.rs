@@ -62,6 +62,8 @@ pub struct Scheme {
     pub rescue: Option<Rescue>,
     /// The instruction set.
     pub kernel: Kernel,
+    /// Hash of the scene that it was made from, for files that say where a state comes from; empty where there is none.
+    pub scene: String,
 }
 
 impl Scheme {
@@ -123,6 +125,7 @@ impl Scheme {
             corrections,
             rescue: None,
             kernel,
+            scene: String::new(),
         })
     }
 
@@ -181,7 +184,7 @@ impl Scheme {
         let (sources, corrections) = (self.sources.clone(), self.corrections.clone());
         let new =
             new.with_sources(sources).with_corrections(corrections).with_rescue(self.rescue).with_kernel(self.kernel);
-        let new = new.with_pairings(pairings)?;
+        let new = Self { scene: self.scene.clone(), ..new.with_pairings(pairings)? };
         match self.curl {
             Some(control) => new.with_curl(control),
             None => Ok(new),

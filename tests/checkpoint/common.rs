@@ -5,75 +5,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A small impact of S2T2 that changes its grid, with plasticity and outputs: some 60 steps.
-pub const SCENE: &str = r#"title = "small impact"
-mesh.rectangle = { size = [1.0, 0.5], cells = [4, 2] }
-boundary = [
-    { group = "left", kind = "unilateral", gap = 1e-3 },
-    { group = "bottom", kind = "symmetry" },
-    { group = "right", kind = "free" },
-    { group = "top", kind = "free" },
-]
-[[material]]
-law = "j2"
-young = 2e11
-poisson = 0.3
-density = 7800.0
-yield_stress = 4e8
-hardening = 1e9
-[initial]
-velocity = ["-200", "0"]
-[scheme]
-method = "ader-dgmpm"
-degree = 2
-[checkpoint]
-every_steps = 3
-[time]
-end = 1.2e-4
-[[output]]
-kind = "fields"
-every = 2e-5
-[[output]]
-kind = "ledger"
-[[output]]
-kind = "line"
-name = "bottom"
-from = [0.0, 0.0]
-to = [1.0, 0.0]
-samples = 5
-every_steps = 3
-[[output]]
-kind = "probe"
-name = "corner"
-point = [1.0, 0.5]
-[[output]]
-kind = "force"
-name = "walls"
-every_steps = 2
-[[output]]
-kind = "extreme"
-name = "peak"
-field = "von_mises"
-[[output]]
-kind = "energy"
-name = "energies"
-[[quantity]]
-name = "mean_force"
-kind = "force"
-group = "left"
-over = "run"
-statistic = "mean"
-[[quantity]]
-name = "early"
-kind = "value"
-field = "velocity"
-component = "1"
-at = [1.0, 0.25]
-time = 5e-5
-[[regrid]]
-every = 5e-5
-refine = 2
-"#;
+/// A small impact of S2T2 that changes its grid, with plasticity and outputs: some 60 steps. `make faults` has it too.
+pub const SCENE: &str = include_str!("case.toml");
 
 /// A folder of its own, with the scene `case.toml`.
 pub struct Bench {
@@ -178,6 +111,14 @@ pub fn assert_same(name: &str, one: &Path, two: &Path) {
     let texts =
         |all: &BTreeMap<String, Vec<u8>>| differs.first().map(|f| String::from_utf8_lossy(&all[*f]).into_owned());
     assert!(differs.is_empty(), "{name}: {differs:?} differ\n{:?}\n{:?}", texts(&one), texts(&two));
+}
+
+/// Changes a bit of a file.
+pub fn flip(path: &Path, share: f64) {
+    let mut bytes = std::fs::read(path).unwrap();
+    let at = ((bytes.len() - 1) as f64 * share) as usize;
+    bytes[at] ^= 0x10;
+    std::fs::write(path, bytes).unwrap();
 }
 
 /// Copies a folder with what is below it.

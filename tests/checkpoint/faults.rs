@@ -1,21 +1,14 @@
 //! Damaged checkpoints, other scenes, corrupted bytes.
 
-use crate::common::{Bench, assert_same, copy};
+use crate::common::{Bench, assert_same, copy, flip};
 use dgmpm::parts::io::checkpoint;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A run that is done, without its last checkpoint.
 fn stopped(bench: &Bench, name: &str) -> Vec<PathBuf> {
     bench.run(&format!("run case.toml --out {name}"));
     checkpoint::list(&bench.path(name).join("checkpoints")).unwrap().into_iter().map(|(_, path)| path).collect()
-}
-
-fn flip(path: &Path, share: f64) {
-    let mut bytes = fs::read(path).unwrap();
-    let at = ((bytes.len() - 1) as f64 * share) as usize;
-    bytes[at] ^= 0x10;
-    fs::write(path, bytes).unwrap();
 }
 
 #[test]

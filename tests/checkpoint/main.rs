@@ -2,9 +2,12 @@
 
 #[path = "../bodies/mod.rs"]
 mod bodies;
+mod again;
 mod bits;
 mod common;
 mod faults;
 mod folders;
 mod order;
+mod full;
 mod signals;
+mod verify;

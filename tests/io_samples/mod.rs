@@ -115,5 +115,5 @@ pub fn points(mesh: &Mesh, time: f64) -> PointCloud {
         Field::new("piola", Kind::Tensor, noise(9 * count, 99)),
         Field::new("von_mises", Kind::Scalar, awkward(count)),
     ];
-    PointCloud { points, fields }
+    PointCloud { points, fields, about: String::new() }
 }

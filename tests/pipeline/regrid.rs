@@ -68,11 +68,21 @@ fn a_mesh_that_lacks_a_group_is_refused_before_the_first_step_with_those_that_it
 
 #[test]
 fn another_body_in_mid_run_ends_the_run_with_both_areas_and_the_last_good_state() {
-    let bench = bench("at = [5e-5]\nrectangle = { size = [1.2, 0.5], cells = [5, 2] }");
+    // With the area and the centre of the body as far as they are compared before the first step.
+    let bench = bench("at = [5e-5]\nrectangle = { size = [1.04, 0.48], cells = [5, 2] }");
     let message = bench.fail(2, "run case.toml");
-    for words in ["regrid at step ", "lie outside of the old grid", "1.000e-1 m^2"] {
+    for words in ["regrid at step ", "lie outside of the old grid", "1.920e-2 m^2"] {
         assert!(message.contains(words), "{words}: {message}");
     }
+}
+
+#[test]
+fn a_mesh_of_another_size_is_refused_before_the_first_step() {
+    let bench = bench("at = [5e-5]\nmesh = \"large.h5\"");
+    put(&bench, "large.h5", &dgmpm::parts::mesh::rectangle([1.2, 0.5], [5, 2]).unwrap());
+    let message = bench.fail(2, "run case.toml");
+    assert!(message.contains("large.h5 is of another body: its area is 6e-1 m^2"), "{message}");
+    assert!(!bench.path("runs/case/snapshots").exists());
 }
 
 #[test]

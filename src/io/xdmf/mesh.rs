@@ -30,6 +30,7 @@ fn write_tagged(path: &Path, name: &str, nodes: &[[f64; 2]], cells: (&[i64], usi
     let h5 = companion(path)?;
     let group_name = format!("{name}/group");
     hdf5::create_sealed(&h5, hdf5::Kept::Named, |file| {
+        hdf5::put_program(file)?;
         hdf5::put(file, &format!("{name}/topology"), &[groups.len(), size], topology)?;
         hdf5::put(file, &format!("{name}/geometry"), &[nodes.len(), 2], nodes.as_flattened())?;
         hdf5::put(file, &group_name, &[groups.len()], groups)

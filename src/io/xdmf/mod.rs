@@ -17,6 +17,7 @@ use quick_xml::events::{BytesDecl, BytesText, Event};
 
 use super::pending::write_text;
 use super::store::is_store;
+use crate::built;
 use crate::error::{Error, Result};
 
 /// XML is written into memory.
@@ -46,7 +47,7 @@ fn write_document(path: &Path, fill: impl FnOnce(&mut Xml) -> Written) -> Result
     });
     written.map_err(|e| Error::output(path, e))?;
     let text = String::from_utf8(xml.into_inner()).map_err(|e| Error::output(path, e))?;
-    write_text(path, &(text + "\n"))
+    write_text(path, &(text + "\n" + &built::comment()))
 }
 
 /// An array in the HDF5 file: its place, shape and type.

@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::io::grid::{Field, HighOrderGrid, Kind, check_fields, lagrange_quad_lattice};
 use crate::io::hdf5;
 use crate::io::pending::Pending;
+use crate::io::provenance::Provenance;
 use crate::io::seal;
 
 /// A series that is being written; its files appear at [`Series::finish`].
@@ -52,6 +53,12 @@ impl Series {
         let mut series = Self { path, h5, pending, file, grids, split, steps: Vec::new() };
         series.regrid(grid)?;
         Ok(series)
+    }
+
+    /// Says where the states come from, as attributes of the HDF5 file.
+    pub fn label(&self, from: &Provenance) -> Result<()> {
+        let put = |(name, text): (&str, String)| hdf5::put_attribute(&self.file, name, &text);
+        from.attributes().into_iter().try_for_each(put).map_err(|e| Error::output(&self.h5, hdf5::reason(&e)))
     }
 
     /// Continues the series on another grid of the same degree.

@@ -1,6 +1,6 @@
 //! Mesh files, and where the files of a rule go in the folder of a run.
 
-use super::{Present, Rule, Values};
+use super::{Present, Rule, Values, same};
 use crate::error::{Error, Place, Result};
 use crate::io::pending::{Pending, write_text};
 use crate::io::{mesh_file, read_mesh, regular, seal};
@@ -66,7 +66,7 @@ pub(super) fn make(of: &Values, rule: &dyn Rule, count: usize, _: &Present) -> R
     read_mesh(&rule.resolve(&files[count % files.len()]))
 }
 
-pub(super) fn check(of: &Values, rule: &dyn Rule, _: &Mesh) -> Result<()> {
+pub(super) fn check(of: &Values, rule: &dyn Rule, first: &Mesh) -> Result<()> {
     for file in of.texts("mesh") {
         let path = rule.resolve(file);
         if !path.exists() {
@@ -78,6 +78,10 @@ pub(super) fn check(of: &Values, rule: &dyn Rule, _: &Mesh) -> Result<()> {
             rule.wrong("mesh", format!("{file}: {why}"), "give meshes of the same body with the same groups")
         };
         rule.accepts(&mesh).map_err(here)?;
+        if let Some(what) = same::difference(&mesh, first) {
+            let remedy = "give meshes of the same body in its initial configuration";
+            return Err(rule.wrong("mesh", format!("{file} is of another body: {what}"), remedy));
+        }
     }
     Ok(())
 }

@@ -6,6 +6,7 @@ mod fronts;
 mod geometry;
 mod lines;
 mod rectangles;
+mod same;
 mod shift;
 mod strips;
 
@@ -102,7 +103,7 @@ pub static GRIDS: Table<Grid> = Table::new(&[
         parameters: &[Parameter::required("rectangle", "the rectangle", "", Form::Table(RECTANGLE))],
         check: ANY,
         build: Grid {
-            check: |of, rule, _| rectangles::check(of, "rectangle", rule),
+            check: |of, rule, first| rectangles::check(of, "rectangle", rule, first),
             ..by(|of, rule, count, _| rectangles::make(of, "rectangle", rule, count))
         },
     },
@@ -112,7 +113,7 @@ pub static GRIDS: Table<Grid> = Table::new(&[
         parameters: &[Parameter::required("rectangles", "the rectangles", "", Form::Tables(RECTANGLE))],
         check: ANY,
         build: Grid {
-            check: |of, rule, _| rectangles::check(of, "rectangles", rule),
+            check: |of, rule, first| rectangles::check(of, "rectangles", rule, first),
             ..by(|of, rule, count, _| rectangles::make(of, "rectangles", rule, count))
         },
     },
