@@ -16,6 +16,8 @@ pub const CORRECTIONS: bool = cfg!(feature = "effect-corrections");
 pub const CURL: bool = cfg!(feature = "effect-curl");
 /// Contact of bodies, cracks that close, cohesive edges.
 pub const CONTACT: bool = cfg!(feature = "effect-contact");
+/// Obstacles that are finer than the points of a face.
+pub const OBSTACLES: bool = cfg!(feature = "effect-conditions");
 /// Refuses what is asked for and not there; `asked` has whether it is there, whether it is asked for, and its name.
 ///
 /// # Errors

@@ -60,6 +60,8 @@ pub struct Scheme {
     pub corrections: Vec<Arc<dyn Correction>>,
     /// Which cells are stepped again at order 0; none where it is off.
     pub rescue: Option<Rescue>,
+    /// The bodies whose angular momentum is kept; none where that is off.
+    pub(super) bodies: Option<super::angular_momentum::Bodies>,
     /// The instruction set.
     pub kernel: Kernel,
 }
@@ -122,8 +124,19 @@ impl Scheme {
             curl,
             corrections,
             rescue: None,
+            bodies: None,
             kernel,
         })
+    }
+
+    /// Whether the predictor samples laws away from the Gauss nodes. The stress at the nodes is then a fit of that at the points, whose power is
+    /// not the rate of the strain energy of a nonlinear law.
+    pub fn samples_between_nodes(&self) -> bool {
+        let between = |points: &crate::operators::Points| {
+            let are_nodes = |matrices: &_| matches!(matrices, crate::operators::PointMatrices::Nodes(_));
+            !points.pool.own.is_empty() || !points.pool.shared.iter().all(are_nodes)
+        };
+        matches!(self.method, Method::Ader { .. }) && self.operators.points.as_ref().is_some_and(between)
     }
 
     /// With sources of momentum.
