@@ -279,7 +279,11 @@ impl Block<'_> {
         let line = &self.scheme.operators.line;
         let (face, width) = (sides.face, sides.own.len() / line.m);
         let factor = self.factor();
-        let whole = if built::OBSTACLES { self.fluxes_of_whole_faces(face, sides.own, meter.memory) } else { vec![] };
+        let whole = if built::OBSTACLES && self.scheme.sees_faces {
+            self.fluxes_of_whole_faces(face, sides.own, meter.memory)
+        } else {
+            vec![]
+        };
         for (point, (own, lift)) in sides.own.chunks_exact(width).zip(lift.as_chunks_mut::<UNKNOWNS>().0).enumerate() {
             for lane in 0..LANES {
                 let memory = &mut *meter.memory;

@@ -60,6 +60,8 @@ pub struct Scheme {
     pub corrections: Vec<Arc<dyn Correction>>,
     /// Which cells are stepped again at order 0; none where it is off.
     pub rescue: Option<Rescue>,
+    /// Whether a condition looks at whole faces.
+    pub(super) sees_faces: bool,
     /// The bodies whose angular momentum is kept; none where that is off.
     pub(super) bodies: Option<super::angular_momentum::Bodies>,
     /// The instruction set.
@@ -110,6 +112,7 @@ impl Scheme {
         }
         let (histories, boundary_memory) =
             (Histories::new(&operators, &laws), BoundaryMemory::new(&operators, &boundaries));
+        let sees_faces = boundaries.iter().any(|boundary| boundary.sees_faces());
         let (sources, corrections, curl, kernel) = (vec![], vec![], None, Kernel::widest());
         Ok(Self {
             operators,
@@ -124,6 +127,7 @@ impl Scheme {
             curl,
             corrections,
             rescue: None,
+            sees_faces,
             bodies: None,
             kernel,
         })
