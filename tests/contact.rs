@@ -363,6 +363,8 @@ fn bodies_that_keep_their_angular_momentum_keep_it_to_rounding_through_an_obliqu
         ("ader", &["scheme.angular_momentum=true"][..]),
         ("runge_kutta", &["scheme.angular_momentum=true", "scheme.method=rk-dgfem"]),
         ("cubic", &["scheme.angular_momentum=true", "scheme.degree=3"]),
+        // Friction between sides that do not coincide has a torque, which is shared out.
+        ("friction", &["scheme.angular_momentum=true", "boundary.0.friction=0.5"]),
     ] {
         let outcome = outcome(&format!("kept_{name}"), &discs(&format!("kept_{name}"), 4), sets);
         let scale = 1000.0 * std::f64::consts::PI * 5.0;
@@ -371,8 +373,8 @@ fn bodies_that_keep_their_angular_momentum_keep_it_to_rounding_through_an_obliqu
         }
         let rows = outcome.ledger().column("angular_momentum");
         let change = (rows[rows.len() - 1] - rows[0]) / rows[0];
-        // The bound; without the key it is -1e-3.
-        assert!(change.abs() < 1e-9, "{name}: {change:e}");
+        // Rounding of some hundred steps; without the key it is -5e-4 (S2), -2e-4 (S3).
+        assert!(change.abs() < 1e-13, "{name}: {change:e}");
         assert!(made(&outcome) < 1e-6, "{name}: {}", made(&outcome));
     }
 }

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! Of all changes of p it is the one with the least kinetic energy that leaves momentum and gives this angular momentum (two Lagrange
-//! multipliers: Lee, Gil, Bonet, Comput. Struct. 118, 2013, who keep both in each step by such a projection). x_n are the positions at the start of the step, in
-//! which contact without friction has no torque on a pair: what one body gets the other one gives.
+//! multipliers: Lee, Gil, Bonet, Comput. Struct. 118, 2013, who keep both in each step by such a projection). x_n are the positions at the
+//! start of the step, in which contact without friction has no torque on a pair: what one body gets the other one gives.
 
 use super::block::Block;
 use super::outside::FaceForces;
@@ -23,7 +23,11 @@ use crate::tensor::DEFORMATION;
 
 /// The bodies of a mesh: the block and the lane of each of their cells, in the order of the mesh.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Bodies(Vec<Vec<[usize; 2]>>);
+pub(super) struct Bodies {
+    cells: Vec<Vec<[usize; 2]>>,
+    /// The body of each cell of the mesh.
+    of_cell: Vec<usize>,
+}
 
 impl Bodies {
     fn new(operators: &Operators) -> Self {
@@ -50,12 +54,12 @@ impl Bodies {
             }
             count += 1;
         }
-        let mut bodies = vec![vec![]; count];
-        for (cell, body) in body_of.into_iter().enumerate() {
+        let mut cells = vec![vec![]; count];
+        for (cell, &body) in body_of.iter().enumerate() {
             let (block, lane) = blocks.slot[cell];
-            bodies[body].push([block, lane]);
+            cells[body].push([block, lane]);
         }
-        Self(bodies)
+        Self { cells, of_cell: body_of }
     }
 }
 
@@ -133,13 +137,14 @@ impl Work {
     /// Turns each body of the new state so that its angular momentum has changed by the torque from outside, cells in a fixed order. `before`: the state
     /// that the step began with. Nothing where the scheme does not ask for it.
     pub(super) fn keep_angular_momentum(&mut self, scheme: &Scheme, before: &State) {
-        let Some(Bodies(bodies)) = &scheme.bodies else { return };
+        let Some(bodies) = &scheme.bodies else { return };
+        let between = self.torque_without_reaction(scheme, bodies);
         self.turning_loss = 0.0;
-        for body in bodies {
+        for (body, between) in bodies.cells.iter().zip(between) {
             let sums = self.sums_of(scheme, before, body);
             let centre = sums.first.map(|x| x / sums.mass);
             let inertia = sums.second - sums.mass * (centre[0] * centre[0] + centre[1] * centre[1]);
-            let turn = (self.torque_on(scheme, body) - sums.change) / inertia;
+            let turn = (self.torque_on(scheme, body) - between - sums.change) / inertia;
             // A body that is lost turns no more.
             if !turn.is_finite() {
                 continue;
@@ -148,6 +153,40 @@ impl Work {
             let spin = sums.angular - cross(centre, sums.momentum);
             self.turning_loss -= turn * (spin + 0.5 * turn * inertia);
         }
+    }
+
+    /// The part of each body in what the torques of contact on bodies that touch sum up to, N m s/m: friction between sides that do not quite
+    /// coincide has a torque on the pair, friction times gap. Each body gets of it what its own torque of contact has of all.
+    fn torque_without_reaction(&self, scheme: &Scheme, bodies: &Bodies) -> Vec<f64> {
+        let mut out = vec![0.0; bodies.cells.len()];
+        let (Some(contacts), Some(forces), Some(meetings)) = (&scheme.contacts, &self.outside.forces, &self.meetings)
+        else {
+            return out;
+        };
+        let cells = &scheme.operators.blocks.cells;
+        let body = |face: usize| {
+            let face = &contacts.faces[face];
+            bodies.of_cell[cells[face.face / FACES][face.lane]]
+        };
+        // Bodies that touch have the same, lowest, number.
+        let mut set: Vec<usize> = (0..out.len()).collect();
+        for segment in &meetings.segments {
+            let [a, b] = segment.faces.map(|face| set[body(face)]);
+            set.iter_mut().filter(|set| **set == a.max(b)).for_each(|set| *set = a.min(b));
+        }
+        for (number, face) in contacts.faces.iter().enumerate() {
+            let entry = self.outside.first[face.face / FACES] as usize;
+            out[body(number)] += forces[entry].torque[face.face % FACES].0[face.lane];
+        }
+        let (mut sums, mut sizes) = (vec![0.0; out.len()], vec![0.0; out.len()]);
+        for (torque, &set) in out.iter().zip(&set) {
+            sums[set] += torque;
+            sizes[set] += torque.abs();
+        }
+        for (torque, set) in out.iter_mut().zip(set) {
+            *torque = if sizes[set] > 0.0 { sums[set] * (torque.abs() / sizes[set]) } else { 0.0 };
+        }
+        out
     }
 
     /// The impulse of the torque on a body in the step, N m s/m.
