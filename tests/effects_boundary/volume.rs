@@ -28,9 +28,10 @@ fn damping_faster_than_the_waves_of_a_cell_shortens_the_step_and_the_body_comes_
         let body = body.method(method).degree(degree).end(5e-5);
         let run = Run::of(body.table("[source]", "kind = \"damping\"\nrate = 1e6"));
         let energy = run.ledger.column("total_energy");
-        // It falls but for the rounding of sums; what is left is the strain of v/alpha = 5e-9 m, 1e-4 of the energy.
+        // It falls but for the rounding of sums. What is left is the strain of displacements v/alpha = 5e-9 m between nodes: 1e-4 of the energy at
+        // degree 1, 1.4e-3 at degree 3, whose nodes are closer.
         assert!(energy.windows(2).all(|pair| pair[1] <= pair[0] + 1e-13 * energy[0]), "{method} {degree}: {energy:?}");
-        assert!(energy[energy.len() - 1] < 1e-3 * energy[0], "{method} {degree}: {energy:?}");
+        assert!(energy[energy.len() - 1] < 3e-3 * energy[0], "{method} {degree}: {energy:?}");
     }
 }
 
