@@ -36,6 +36,8 @@ pub const CORRECTIONS: bool = cfg!(feature = "effect-corrections");
 pub const CURL: bool = cfg!(feature = "effect-curl");
 /// Contact of bodies, cracks that close, cohesive edges.
 pub const CONTACT: bool = cfg!(feature = "effect-contact");
+/// Obstacles that are finer than the points of a face.
+pub const OBSTACLES: bool = cfg!(feature = "effect-conditions");
 
 /// Program and commit as a comment of XML in a line of its own.
 pub fn comment() -> String {

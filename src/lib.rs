@@ -135,7 +135,7 @@ pub use step::{Control, Loss, Method, Motion, Relax, Scheme, Survey, Sweeps, Tab
 // What a crate may add: laws, fluxes, conditions, sources, corrections, observers.
 pub use boundary::{
     Absorbing, Boundary, Data, FacePoint, Foundation, Free, Moment, Obstacle, Pressure, Shape, TimeNode, Traction,
-    Unilateral, Velocity, Wall,
+    Unilateral, Velocity, Wall, WholeFace,
 };
 pub use lane::{F8, Kernel, LANES, Lane, Lanes};
 pub use limiter::{Beside, Cell, CellLimiter, Limiter, Modes, MomentLimiter, Sensor, VertexLimiter};

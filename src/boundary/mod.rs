@@ -13,6 +13,7 @@ mod traction;
 mod unilateral;
 mod velocity;
 mod wall;
+mod whole_face;
 
 pub use absorbing::Absorbing;
 pub use foundation::Foundation;
@@ -24,6 +25,7 @@ pub use traction::Traction;
 pub use unilateral::Unilateral;
 pub use velocity::Velocity;
 pub use wall::Wall;
+pub use whole_face::WholeFace;
 
 use crate::riemann::{Impedance, Medium, Trace, current_normal};
 use std::sync::Arc;
@@ -91,6 +93,17 @@ pub trait Boundary: Send + Sync {
     /// image for the neighbour. None by default: nothing is known of what lies behind.
     fn mirror(&self, _x: [f64; 2], _time: f64) -> Option<f64> {
         None
+    }
+
+    /// Whether it looks at whole faces, by [`Boundary::face_flux`]; not by default.
+    fn sees_faces(&self) -> bool {
+        false
+    }
+
+    /// Flux*.N at all points of a face, where what lies between the points decides; else false, and the memory as it was: then
+    /// [`Boundary::flux`] is asked at each point. `memory` are the numbers of all points of the face.
+    fn face_flux(&self, _face: &WholeFace, _when: &Moment, _memory: &mut [f64], _flux: &mut [[f64; 6]]) -> bool {
+        false
     }
 
     /// Flux*.N at a face point, in the order of U. Called once a point and stage. `memory` are the numbers of that point, as the

@@ -2,6 +2,7 @@
 
 use super::shape::Shape;
 use super::surface::Surface;
+use super::whole_face::{Touch, WholeFace};
 use super::{Boundary, Data, FacePoint, Moment, mean};
 use crate::riemann::{Trace, current_normal, star};
 use crate::tensor::dot;
@@ -14,6 +15,8 @@ use crate::tensor::dot;
 /// The gap is the true distance: a body goes in by dt v at most when it closes, that stays while they touch, and does not add up. A step
 /// along a curved obstacle opens the gap by (dt slip)^2 / (2 radius), so that now and then a step is free; a
 /// correction of the position or of w would make energy. An obstacle at rest does no work but that of friction.
+///
+/// What is finer than the points of a face, a corner of a polygon or a disc, is tested against the face itself: see [`WholeFace`].
 #[derive(Clone)]
 pub struct Obstacle {
     /// What it is, where it stands at the start.
@@ -29,15 +32,55 @@ impl Boundary for Obstacle {
         &[0.0; 2]
     }
 
+    fn sees_faces(&self) -> bool {
+        self.shape.has_tips()
+    }
+
+    fn face_flux(&self, face: &WholeFace, when: &Moment, memory: &mut [f64], flux: &mut [[f64; 6]]) -> bool {
+        let (moved, _) = memory.as_chunks::<2>();
+        let mut touches = vec![];
+        self.shape.each_tip(|tip| touches.extend(face.touch(&tip, moved)));
+        if touches.is_empty() {
+            return false;
+        }
+        let tips = touches.len();
+        for (i, (at, inside)) in face.points.iter().zip(face.inside).enumerate() {
+            let (gap, out) = self.shape.distance([at.x[0] + moved[i][0], at.x[1] + moved[i][1]]);
+            let normal = out.map(|out| -out);
+            if gap <= 0.0 && looks(inside, at, normal) {
+                let values = (0..moved.len()).map(|k| f64::from(u8::from(k == i))).collect();
+                touches.push(Touch { normal, values, force: [0.0; 2] });
+            }
+        }
+        let w = self.velocity_at(&face.points[0], when);
+        let v = face.held(&mut touches, w, self.friction, flux);
+        if touches[..tips].iter().all(|tip| tip.force[0] == 0.0) {
+            return false;
+        }
+        for (memory, v) in memory.as_chunks_mut::<2>().0.iter_mut().zip(v) {
+            (0..2).for_each(|i| memory[i] += when.dt * (v[i] - w[i]));
+        }
+        true
+    }
+
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, memory: &mut [f64]) -> [f64; 6] {
-        let w = self.velocity.as_ref().map_or([0.0; 2], |both| [0, 1].map(|i| mean(&both[i], at.x, when)));
+        let w = self.velocity_at(at, when);
         let (gap, out) = self.shape.distance([at.x[0] + memory[0], at.x[1] + memory[1]]);
         let n = out.map(|out| -out);
         let surface = Surface { normal: n, speed: [dot(w, n), n[0] * w[1] - n[1] * w[0]], friction: self.friction };
-        // The far side of a thin body may lie within the obstacle too: it does not look at it.
-        let looks = || dot(current_normal(inside.f, inside.f, at.normal), n) > 0.0;
-        let (state, _) = surface.unilateral(inside, at, gap <= 0.0 && looks());
+        let (state, _) = surface.unilateral(inside, at, gap <= 0.0 && looks(inside, at, n));
         (0..2).for_each(|i| memory[i] += when.dt * (state.v[i] - w[i]));
         star(state.v, state.t, at.normal)
     }
+}
+
+impl Obstacle {
+    fn velocity_at(&self, at: &FacePoint, when: &Moment) -> [f64; 2] {
+        self.velocity.as_ref().map_or([0.0; 2], |both| [0, 1].map(|i| mean(&both[i], at.x, when)))
+    }
+}
+
+/// Whether a face point looks along n, into the obstacle. The far side of a thin body may lie within the obstacle too: it does not.
+fn looks(inside: &Trace<f64>, at: &FacePoint, n: [f64; 2]) -> bool {
+    dot(current_normal(inside.f, inside.f, at.normal), n) > 0.0
 }

@@ -26,6 +26,17 @@ pub enum Shape {
     },
 }
 
+/// A part of an obstacle that may lie between the points of a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Tip {
+    /// Where, m.
+    pub at: [f64; 2],
+    /// How far its surface is from there, m.
+    pub radius: f64,
+    /// The normals of both edges of a corner, counterclockwise: between them lie the directions that lead away from it. All do, for none.
+    pub cone: Option<[[f64; 2]; 2]>,
+}
+
 impl Shape {
     /// The distance of x from the surface, below 0 inside of the obstacle, m; and the unit normal out of the obstacle at the nearest
     /// point of the surface.
@@ -40,6 +51,32 @@ impl Shape {
                 (length - radius, normal)
             }
             Self::Polygon { corners } => of_polygon(corners, x),
+        }
+    }
+
+    /// Calls `visit` with each corner of a polygon that stands out, and with a disc.
+    pub(super) fn each_tip(&self, mut visit: impl FnMut(Tip)) {
+        match self {
+            Self::HalfPlane { .. } => {}
+            Self::Disc { centre, radius } => visit(Tip { at: *centre, radius: *radius, cone: None }),
+            Self::Polygon { corners } => {
+                let (turn, count) = (Self::twice_area(corners).signum(), corners.len());
+                let outward = |from: [f64; 2], to: [f64; 2]| {
+                    let edge = minus(to, from);
+                    let length = turn * edge[0].hypot(edge[1]);
+                    [edge[1] / length, -edge[0] / length]
+                };
+                for (i, at) in corners.iter().enumerate() {
+                    let (before, after) = (corners[(i + count - 1) % count], corners[(i + 1) % count]);
+                    let mut cone = [outward(before, *at), outward(*at, after)];
+                    if turn < 0.0 {
+                        cone.swap(0, 1);
+                    }
+                    if cross(cone[0], cone[1]) > 0.0 {
+                        visit(Tip { at: *at, radius: 0.0, cone: Some(cone) });
+                    }
+                }
+            }
         }
     }
 
@@ -94,7 +131,7 @@ fn edges(corners: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + '
     corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
 }
 
-fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+pub(super) fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] - b[0], a[1] - b[1]]
 }
 

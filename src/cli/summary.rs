@@ -17,7 +17,9 @@ pub fn print(outcome: &Outcome, got_to_its_end: bool) {
     if let Some(overlap) = outcome.report.overlap.filter(|overlap| overlap.share > WORTH_NAMING) {
         let ([x, y], percent) = (overlap.x, 100.0 * overlap.share);
         warn(format!(
-            "bodies overlap by {percent:.0} % of a cell at ({x:.4}, {y:.4}), and from 100 % on they pass through each other: use smaller cells there"
+            "bodies overlap by {percent:.0} % of a cell at ({x:.4}, {y:.4}), and from 100 % on they pass through each other: smaller cells help where they are coarse for \
+             the shapes there, and not where corners meet head-on, a body is thin or a soft one is hit at half of its wave speed; [limiter] kind = \"moment\" or degree = 1 \
+             hold corners better"
         ));
     }
 }

@@ -59,7 +59,7 @@ impl Scene {
     pub fn pairings(&self, mesh: &Mesh) -> Vec<Pairing> {
         let number = |name: &str| mesh.edge_groups.iter().position(|group| group == name);
         let of = |boundary: &Boundary| {
-            let law = boundary.condition.build().interaction?(&boundary.condition.values);
+            let law = (boundary.condition.build().between.as_ref()?.make)(&boundary.condition.values);
             let partner = boundary.partner().map_or(boundary.group.as_str(), |(_, group)| group);
             Some(Pairing { groups: [number(&boundary.group)?, number(partner)?], law })
         };
@@ -151,7 +151,11 @@ impl Scene {
         let scheme = Scheme::new(operators, laws, self.integration(), flux, boundaries)?;
         let scheme = scheme.with_pairings(&pairings).map_err(|why| self.at_cut(why))?;
         let scheme = scheme.with_sources(sources).with_corrections(self.limiters()).with_kernel(kernel);
-        let mut scheme = scheme.with_rescue(self.limiter.values.boolean("rescue").then(Rescue::default));
+        let scheme = scheme.with_rescue(self.limiter.values.boolean("rescue").then(Rescue::default));
+        let mut scheme = match self.scheme.angular_momentum {
+            true => self.keeping_angular_momentum(scheme)?,
+            false => scheme,
+        };
         scheme.scene = differences::hash(self);
         // Constants have no curl.
         match curl.filter(|_| self.scheme.degree > 0) {
@@ -160,10 +164,19 @@ impl Scene {
         }
     }
 
+    fn keeping_angular_momentum(&self, scheme: Scheme) -> Result<Scheme> {
+        if self.boundaries.iter().any(Boundary::is_joined) {
+            let what = "a body that goes on at a periodic boundary has no angular momentum that could be kept";
+            return Err(self.error("scheme.angular_momentum", what, "remove this key, or the periodic boundary"));
+        }
+        scheme.keeping_angular_momentum().map_err(|why| why.or_at(self.place("scheme.angular_momentum")))
+    }
+
     /// An error of the pairs of a cut, at its condition.
     fn at_cut(&self, why: Error) -> Error {
         let of_cut = |boundary: &Boundary| {
-            let interaction = boundary.condition.build().interaction.map(|make| make(&boundary.condition.values));
+            let interaction =
+                boundary.condition.build().between.as_ref().map(|between| (between.make)(&boundary.condition.values));
             interaction.is_some_and(|interaction| interaction.pairs() == Pairs::Initial)
         };
         match (why, self.boundaries.iter().position(of_cut)) {
@@ -235,9 +248,11 @@ impl Scene {
                 format!("give scheme.safety up to 1 (0.9 is the default), or scheme.cfl up to {allowed:.3}"),
             ));
         }
+        let decay: f64 = self.sources.iter().map(|source| self.source(source).decay()).sum();
         Ok(Settings {
             end: self.end,
             courant: safety * limit,
+            decay: decay / (safety * cfl::DECAY),
             watch: self.watch.map(|scene::Watch { warn, stop }| WatchLimits { warn, stop }),
         })
     }

@@ -7,7 +7,7 @@ use crate::mesh::{BoundaryEdge, Link, Mesh};
 use crate::operators::{Blocks, Neighbour};
 use crate::scene::{Scene, When};
 use crate::state::State;
-use crate::step::{Overlap, Scheme, Survey, cfl};
+use crate::step::{DeepestOverlap, Scheme, Survey, cfl};
 use std::collections::HashMap;
 
 /// Parts that a list names before it only counts.
@@ -81,7 +81,8 @@ fn meeting(scheme: &Scheme) -> HashMap<usize, Vec<usize>> {
 
 /// A word on bodies that overlap at the start.
 fn overlap(scheme: &Scheme, state: &State) -> Option<String> {
-    let Overlap { depth, share, x: [x, y] } = scheme.overlap(state).filter(|overlap| overlap.share > STARTS_APART)?;
+    let DeepestOverlap { depth, share, x: [x, y] } =
+        scheme.overlap(state).filter(|overlap| overlap.share > STARTS_APART)?;
     Some(format!(
         "bodies in contact overlap by {depth:.3e} m at the start, {:.0} % of a cell, at ({x:.4}, {y:.4}): they will be pushed apart",
         100.0 * share

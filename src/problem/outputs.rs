@@ -20,8 +20,12 @@ impl Scene {
             shown || (output.what.build().displacement)(&output.what.values)
         };
         let needs = |quantity: &Quantity| (quantity.what.build().displacement)(&quantity.what.values);
-        let meets = |boundary: &Boundary| boundary.condition.build().interaction.is_some();
-        self.outputs.iter().any(wants) || self.quantities.iter().any(needs) || self.boundaries.iter().any(meets)
+        let meets = |boundary: &Boundary| boundary.condition.build().between.is_some();
+        let turns = self.scheme.angular_momentum;
+        turns
+            || self.outputs.iter().any(wants)
+            || self.quantities.iter().any(needs)
+            || self.boundaries.iter().any(meets)
     }
 
     /// The fields that an output shows.
@@ -78,7 +82,7 @@ impl Problem {
             dissipated: !scheme.histories.is_empty(),
             regrids: !scene.regrids.is_empty(),
             contact: scheme.has_contacts(),
-            corrections: !scheme.corrections.is_empty() || scheme.rescue.is_some(),
+            corrections: !scheme.corrections.is_empty() || scheme.rescue.is_some() || scheme.keeps_angular_momentum(),
             balance: false,
         };
         let (mesh, material) = (&body.mesh, &body.material[..]);

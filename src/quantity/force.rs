@@ -2,7 +2,7 @@
 
 use super::places::on_face;
 use super::{Quantity, Seen};
-use crate::boundary::{FacePoint, Moment, TimeNode};
+use crate::boundary::{FacePoint, Moment, TimeNode, WholeFace};
 use crate::error::Error;
 use crate::mesh::{FACES, Mesh, map};
 use crate::operators::Neighbour;
@@ -72,19 +72,26 @@ impl Force {
         let medium = Medium::new(law.density(), law.shear_modulus(), scheme.operators.degree);
         let times_of_step = [TimeNode { time, weight: 1.0 }];
         let when = Moment { times: &times_of_step, dt: 0.0 };
-        let mut force = 0.0;
-        for (&along, weight) in solution.basis.nodes.iter().zip(&solution.basis.weights) {
-            let xi = on_face(face, along);
-            let point = solution.at(cell, xi);
+        let corners = seen.mesh.corners(cell);
+        let trace = |along: &f64| {
+            let point = solution.at(cell, on_face(face, *along));
             let (f, t) = (point.deformation, times(point.response(law).piola, normal));
-            let inside = Trace { f, v: point.velocity, t, c: law.speeds(f, normal) };
-            let at = FacePoint { x: map::position(&seen.mesh.corners(cell), xi), normal, medium };
-            let mut own = memory.next().unwrap_or_default();
-            let flux = scheme.boundaries[self.group].flux(&inside, &at, &when, &mut own);
-            // The flux of momentum is -t*.
-            force -= weight * length * flux[4 + self.axis];
+            Trace { f, v: point.velocity, t, c: law.speeds(f, normal) }
+        };
+        let basis = &solution.basis;
+        let inside: Vec<_> = basis.nodes.iter().map(trace).collect();
+        let place = |along: f64| map::position(&corners, on_face(face, along));
+        let points: Vec<_> = basis.nodes.iter().map(|s| FacePoint { x: place(*s), normal, medium }).collect();
+        let mut own: Vec<_> = points.iter().map(|_| memory.next().unwrap_or_default()).collect();
+        let (condition, mut flux) = (&scheme.boundaries[self.group], vec![[0.0; 6]; points.len()]);
+        let whole = WholeFace { ends: [place(0.0), place(1.0)], points: &points, inside: &inside, basis };
+        if !condition.sees_faces() || !condition.face_flux(&whole, &when, &mut own.concat(), &mut flux) {
+            for (i, flux) in flux.iter_mut().enumerate() {
+                *flux = condition.flux(&inside[i], &points[i], &when, &mut own[i]);
+            }
         }
-        force
+        // The flux of momentum is -t*.
+        basis.weights.iter().zip(flux).map(|(weight, flux)| -weight * length * flux[4 + self.axis]).sum()
     }
 }
 

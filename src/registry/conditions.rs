@@ -15,26 +15,37 @@ pub type MakeInteraction = fn(&Values) -> Arc<dyn Interaction>;
 pub struct Condition {
     /// Makes it from its parameters.
     pub make: fn(&Values) -> Arc<dyn Boundary>,
-    /// The parameter that names another group: the faces of both are joined and are inner faces then, or, with an interaction, act on
-    /// each other.
-    pub partner: Option<&'static str>,
-    /// Makes what acts between the faces of the group and those of its partner (or of the group itself).
-    pub interaction: Option<MakeInteraction>,
+    /// The parameter that names the group at which the body goes on: the faces of both are inner faces then.
+    pub joined: Option<&'static str>,
+    /// What acts between faces.
+    pub between: Option<Between>,
+    /// Whether it presses where bodies touch, which strains cells unevenly: material points stand on the Gauss nodes then, unless the scene
+    /// says where.
+    pub presses: bool,
+}
+
+/// What acts between the faces of a group and those of another one, or of the group itself.
+pub struct Between {
+    /// Makes it.
+    pub make: MakeInteraction,
+    /// The parameter that names the other group.
+    pub other: Option<&'static str>,
 }
 
 impl Condition {
     /// A condition that knows of its own faces only.
     pub const fn of(make: fn(&Values) -> Arc<dyn Boundary>) -> Self {
-        Self { make, partner: None, interaction: None }
+        Self { make, joined: None, between: None, presses: false }
+    }
+
+    /// An obstacle.
+    const fn obstacle(make: fn(&Values) -> Arc<dyn Boundary>) -> Self {
+        Self { presses: true, ..Self::of(make) }
     }
 
     /// What acts between faces.
-    const fn between(
-        make: fn(&Values) -> Arc<dyn Boundary>,
-        interaction: MakeInteraction,
-        partner: Option<&'static str>,
-    ) -> Self {
-        Self { make, partner, interaction: Some(interaction) }
+    const fn between(make: fn(&Values) -> Arc<dyn Boundary>, between: Between) -> Self {
+        Self { make, joined: None, presses: between.other.is_some(), between: Some(between) }
     }
 }
 
@@ -128,7 +139,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
             true => Err(Fault::new("normal", "the normal has no direction", "give for instance [0, 1]")),
             false => moves_as_a_whole(of),
         },
-        build: Condition::of(|of| {
+        build: Condition::obstacle(|of| {
             let (point, n) = (of.vector("point"), of.vector("normal"));
             let length = n[0].hypot(n[1]);
             obstacle(of, Shape::HalfPlane { point, normal: n.map(|n| n / length) })
@@ -145,7 +156,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
             FRICTION,
         ],
         check: moves_as_a_whole,
-        build: Condition::of(|of| {
+        build: Condition::obstacle(|of| {
             obstacle(of, Shape::Disc { centre: of.vector("centre"), radius: of.number("radius") })
         }),
     },
@@ -162,7 +173,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
             polygon(of.points("corners"))?;
             moves_as_a_whole(of)
         },
-        build: Condition::of(|of| obstacle(of, Shape::Polygon { corners: of.points("corners").to_vec() })),
+        build: Condition::obstacle(|of| obstacle(of, Shape::Polygon { corners: of.points("corners").to_vec() })),
     },
     Entry {
         name: "symmetry",
@@ -265,7 +276,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
         )],
         check: ANY,
         // The faces are inner faces: nothing asks for their condition.
-        build: Condition { partner: Some("partner"), ..Condition::of(|_| Arc::new(Free)) },
+        build: Condition { joined: Some("partner"), ..Condition::of(|_| Arc::new(Free)) },
     },
     #[cfg(feature = "effect-contact")]
     Entry {
@@ -288,7 +299,10 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
             ),
         ],
         check: ANY,
-        build: Condition::between(|of| Arc::new(Paired(sliding(of))), sliding, Some("partner")),
+        build: Condition::between(
+            |of| Arc::new(Paired(sliding(of))),
+            Between { make: sliding, other: Some("partner") },
+        ),
     },
     #[cfg(feature = "effect-contact")]
     Entry {
@@ -323,7 +337,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
                 _ => Ok(()),
             }
         },
-        build: Condition::between(|of| Arc::new(Paired(cohesive(of))), cohesive, None),
+        build: Condition::between(|of| Arc::new(Paired(cohesive(of))), Between { make: cohesive, other: None }),
     },
 ]);
 

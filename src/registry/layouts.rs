@@ -41,7 +41,11 @@ pub type InCell = Box<dyn Fn(usize, usize) -> Vec<[f64; 2]>>;
 /// The layout of laws with memory in a scene that names none: histories need not leave the points then.
 pub const WITH_MEMORY: &str = "gauss";
 
-/// The layout of a scene that names none, see [`seed::default_layout`].
+/// The layout of a scene with contact or obstacles that names none. What presses and shears at a contact strains cells unevenly, and a law
+/// that is sampled away from the Gauss nodes then makes energy.
+pub const IN_CONTACT: &str = "gauss";
+
+/// The layout of any other scene that names none, see [`seed::default_layout`].
 pub fn default_name(degree: usize) -> &'static str {
     match seed::default_layout(degree) {
         seed::Layout::Paper => "paper",
@@ -79,7 +83,7 @@ pub static LAYOUTS: Table<Layout> = Table::new(&[
     },
     Entry {
         name: "gauss",
-        about: "lattice of Gauss-Legendre points; the default for laws with internal variables",
+        about: "lattice of Gauss-Legendre points; the default for laws with internal variables, and of scenes with contact or obstacles",
         parameters: &[],
         check: ANY,
         build: Layout { on_nodes: true, ..lattice(|_| of(seed::Layout::Gauss)) },

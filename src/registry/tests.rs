@@ -99,7 +99,11 @@ fn builders_ask_for_the_parameters_of_their_entry_and_for_no_others() {
     for entry in &CONDITIONS {
         assert_eq!(strange(entry, |build, of| drop((build.make)(of))), none, "{}", entry.name);
         let is_known = |key: &str| entry.parameters.iter().any(|parameter| parameter.name == key);
-        assert!(entry.build.partner.is_none_or(is_known), "{}", entry.name);
+        assert!(
+            entry.build.joined.or(entry.build.between.as_ref().and_then(|between| between.other)).is_none_or(is_known),
+            "{}",
+            entry.name
+        );
     }
     for entry in &SOURCES {
         assert_eq!(strange(entry, |build, of| drop(build(of, None))), none, "{}", entry.name);

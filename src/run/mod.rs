@@ -40,6 +40,8 @@ pub struct Settings {
     pub end: f64,
     /// dt = courant min_e h_e / c_max, c_max the largest current speed.
     pub courant: f64,
+    /// What damping takes of the step, 1/s: 1/dt is that of waves and this; see [`crate::step::cfl::DECAY`].
+    pub decay: f64,
     /// What the watch over the energy does at which shares; none where it is off.
     pub watch: Option<Limits>,
 }
@@ -164,7 +166,8 @@ impl Run<'_, '_> {
     ) -> Result<End, Stop> {
         let wants = |what: fn(&dyn Observer) -> bool| self.observers.iter().any(|observer| what(&**observer));
         let (forces, balance) = (wants(|observer| observer.wants_forces()), wants(|observer| observer.wants_balance()));
-        built::refuse(&[(built::FORCES, forces, "forces"), (built::BALANCE, balance, "the balance of energy")])?;
+        let metered = forces || self.scheme.keeps_angular_momentum();
+        built::refuse(&[(built::FORCES, metered, "forces"), (built::BALANCE, balance, "the balance of energy")])?;
         let mut motion = Motion::unsurveyed(self.scheme, std::mem::take(state));
         if balance {
             motion = motion.with_balance(self.scheme);
@@ -213,7 +216,7 @@ impl Run<'_, '_> {
                 self.keep(keep, (pause, motion), report)?;
             }
             let stop = pause.stop(time).unwrap_or(f64::INFINITY).min(self.next_stop(time));
-            let stable = self.settings.courant * h / motion.survey.fastest;
+            let stable = self.settings.stable_step(h, motion.survey.fastest);
             let dt = step_size(stop - time, stable);
             let next = end_of_step(time, dt, stop);
             check_advance([time, next, self.settings.end], [stable, dt], h)?;
@@ -295,6 +298,15 @@ fn end_of_step(time: f64, dt: f64, stop: f64) -> f64 {
 /// Steps of a run that no machine does.
 const ENDLESS: f64 = 1e13;
 
+impl Settings {
+    /// The largest step for cells of size `h`, m, and waves of speed `fastest`, m/s.
+    fn stable_step(&self, h: f64, fastest: f64) -> f64 {
+        let of_waves = self.courant * h / fastest;
+        // Without damping to the last bit what it is without this line.
+        if self.decay == 0.0 { of_waves } else { 1.0 / (1.0 / of_waves + self.decay) }
+    }
+}
+
 /// Refuses a step of `dt` to the time `next` that does not lead to the end: not to a later time, or with a stable step of next to nothing.
 ///
 /// # Errors
@@ -311,7 +323,8 @@ fn check_advance([time, next, end]: [f64; 3], [stable, dt]: [f64; 2], h: f64) ->
             format!("the smallest cell has the size {h:e} m: give a mesh without collapsed or inverted cells")
         }
         (true, false) => format!(
-            "the step is a share of {h:e} m, the size of the smallest cell, over the wave speed: give larger cells, or a larger cfl or safety"
+            "the step is a share of {h:e} m, the size of the smallest cell, over the wave speed: give larger cells, a larger cfl or safety, or a smaller `rate` \
+             where a [[source]] damps"
         ),
         (true, true) => "times have 16 digits: let [time] start nearer to 0, or give a larger cfl or safety".to_owned(),
     };

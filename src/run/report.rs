@@ -4,7 +4,7 @@ use super::watch::{Alarm, Limits, Watch};
 use super::{Kept, Treated};
 use crate::state::{State, UNKNOWNS};
 use crate::step::phase::{NAMES, Phases};
-use crate::step::{Balance, Held, Motion, Overlap, Scheme, Survey, Totals};
+use crate::step::{Balance, DeepestOverlap, Held, Motion, Scheme, Survey, Totals};
 use cpu_time::ProcessTime;
 use serde_json::{Map, Value, json};
 use std::time::Instant;
@@ -37,7 +37,7 @@ pub struct Report {
     /// The cells that a limiter and the rescue have changed; none where the scheme has neither.
     pub treated: Option<Treated>,
     /// The deepest overlap of bodies; none where no condition pairs any.
-    pub overlap: Option<Overlap>,
+    pub overlap: Option<DeepestOverlap>,
     /// The smallest J that was seen in a state of the run, at its points, grid nodes and face points.
     pub min_j: f64,
     /// Bytes of operators, state and work.
@@ -204,7 +204,7 @@ impl Report {
         if let Some(treated) = &self.treated {
             pairs.push(("treated_cells", treated.json()));
         }
-        if let Some(Overlap { depth, share, x }) = self.overlap {
+        if let Some(DeepestOverlap { depth, share, x }) = self.overlap {
             pairs.push(("contact_overlap", json!({ "depth": depth, "share_of_cell": share, "place": x })));
         }
         let first = self.first.and_then(|first| first.angular_momentum);

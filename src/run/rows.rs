@@ -2,7 +2,7 @@
 
 use super::Report;
 use crate::format::{Row, mebibytes, row, seconds};
-use crate::step::{Balance, Overlap, Totals, phase::NAMES};
+use crate::step::{Balance, DeepestOverlap, Totals, phase::NAMES};
 
 impl Report {
     /// What the run cost, and what became of energy and momentum.
@@ -45,7 +45,7 @@ impl Report {
             Some(balance) => rows.extend(balance_rows(balance)),
             None => rows.extend(work_rows([self.watch.work[0], self.watch.work[1], self.watch.contact_work])),
         }
-        if let Some(Overlap { depth, share, x: [x, y] }) = self.overlap {
+        if let Some(DeepestOverlap { depth, share, x: [x, y] }) = self.overlap {
             let at = if share > 0.0 { format!(", at ({x:.4}, {y:.4})") } else { String::new() };
             rows.push(row("deepest overlap", format!("{depth:.3e} m, {:.1} % of a cell{at}", 100.0 * share)));
         }

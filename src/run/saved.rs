@@ -3,7 +3,7 @@
 use super::{Limits, Report, Treated, Watch};
 use crate::error::Result;
 use crate::step::phase::Phases;
-use crate::step::{Balance, Overlap, Totals};
+use crate::step::{Balance, DeepestOverlap, Totals};
 use crate::words::{Saved, Words};
 use cpu_time::ProcessTime;
 use std::time::Instant;
@@ -25,7 +25,7 @@ impl Report {
         to.flag(self.treated.is_some());
         self.treated.iter().for_each(|treated| treated.save(to));
         to.flag(self.overlap.is_some());
-        self.overlap.iter().for_each(|Overlap { depth, share, x }| {
+        self.overlap.iter().for_each(|DeepestOverlap { depth, share, x }| {
             to.real(*depth).real(*share).real(x[0]).real(x[1]);
         });
     }
@@ -54,9 +54,9 @@ impl Report {
     }
 }
 
-fn restored_overlap(from: &mut Saved) -> Result<Overlap> {
+fn restored_overlap(from: &mut Saved) -> Result<DeepestOverlap> {
     let [depth, share, x, y] = from.array()?;
-    Ok(Overlap { depth, share, x: [x, y] })
+    Ok(DeepestOverlap { depth, share, x: [x, y] })
 }
 
 fn restored_phases(from: &mut Saved) -> Result<Phases> {

@@ -66,6 +66,8 @@ pub struct Watch {
     /// The largest rise so far.
     pub made: EnergyMade,
     warned: bool,
+    /// Whether laws are sampled away from the Gauss nodes.
+    between_nodes: bool,
     /// Steps done under its eyes.
     steps: usize,
     cells: Vec<crate::lane::F8>,
@@ -79,8 +81,7 @@ impl Watch {
     }
 
     pub(super) fn save(&self, to: &mut Words) {
-        let Self { work, contact_work, stored, regrids, scale, lowest, made, warned, steps, limits: _, cells: _ } =
-            self;
+        let Self { work, contact_work, stored, regrids, scale, lowest, made, warned, steps, .. } = self;
         to.real(work[0]).real(work[1]).real(*contact_work).real(*stored).real(*regrids).real(*scale).real(*lowest);
         to.real(made.joule).real(made.share).real(made.time).count(made.step).flag(*warned).count(*steps);
     }
@@ -88,8 +89,9 @@ impl Watch {
     pub(super) fn restored(from: &mut Saved, limits: Option<Limits>) -> Result<Self> {
         let (work, [contact_work, stored, regrids, scale, lowest]) = (from.array()?, from.array()?);
         let ([joule, share, time], step) = (from.array()?, from.count()?);
-        let (made, warned, steps) = (EnergyMade { joule, share, time, step }, from.flag()?, from.count()?);
-        Ok(Self { limits, work, contact_work, stored, regrids, scale, lowest, made, warned, steps, cells: vec![] })
+        let (made, warned, steps) =
+            (EnergyMade { joule, share, time, step, between_nodes: false }, from.flag()?, from.count()?);
+        Ok(Self { limits, work, contact_work, stored, regrids, scale, lowest, made, warned, steps, ..Self::default() })
     }
 
     /// Whether it has something to look at every so many steps.
@@ -124,6 +126,7 @@ impl Watch {
             None => scheme.energy(state, work, &mut self.cells),
         };
         self.stored = work.stored_in_contact(scheme, state);
+        self.between_nodes = scheme.samples_between_nodes();
         self.look(energy, state, limits)
     }
 
@@ -138,7 +141,8 @@ impl Watch {
         let own = energy + self.stored - self.work[0] - self.work[1] - self.regrids;
         self.lowest = self.lowest.min(own);
         let joule = own - self.lowest;
-        let made = EnergyMade { joule, share: joule / self.scale, time: state.time, step: state.step };
+        let (time, step, between_nodes) = (state.time, state.step, self.between_nodes);
+        let made = EnergyMade { joule, share: joule / self.scale, time, step, between_nodes };
         if made.share > self.made.share {
             self.made = made;
         }

@@ -161,15 +161,20 @@ pub struct Boundary {
 impl Boundary {
     /// Another group that this one is joined to or interacts with, after the key that names it.
     pub fn partner(&self) -> Option<(&'static str, &str)> {
-        let key = self.condition.build().partner?;
+        let condition = self.condition.build();
+        let key = condition.joined.or(condition.between.as_ref().and_then(|between| between.other))?;
         let partner = self.condition.values.maybe_text(key)?;
         (self.is_joined() || partner != self.group).then_some((key, partner))
     }
 
     /// Whether the faces of the group are joined to those of its partner, as inner faces.
     pub fn is_joined(&self) -> bool {
-        let condition = self.condition.build();
-        condition.partner.is_some() && condition.interaction.is_none()
+        self.condition.build().joined.is_some()
+    }
+
+    /// Whether its condition presses where bodies touch.
+    pub fn presses(&self) -> bool {
+        self.condition.build().presses
     }
 
     /// The group, and that of its partner.
@@ -211,6 +216,8 @@ pub struct Scheme {
     pub step: Step,
     /// The predictor's sweeps; default ladder where N_T = N, else paper.
     pub sweeps: Sweeps,
+    /// Whether each body keeps its angular momentum to rounding; default false.
+    pub angular_momentum: bool,
 }
 
 /// The size of a step.

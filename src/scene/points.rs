@@ -31,9 +31,10 @@ fn usual(name: &str) -> Chosen<Layout> {
     Chosen { entry, values: defaults(entry.parameters, 0) }
 }
 
-/// Reads `[cloud]`.
-pub(super) fn cloud(table: Option<&mut Reader>, degree: usize) -> Result<General> {
-    let default = Cloud { layout: usual(layouts::default_name(degree)), per_direction: degree + 1 };
+/// Reads `[cloud]`, in a scene in which something presses on bodies where they touch, or nothing does.
+pub(super) fn cloud(table: Option<&mut Reader>, degree: usize, presses: bool) -> Result<General> {
+    let name = if presses { layouts::IN_CONTACT } else { layouts::default_name(degree) };
+    let default = Cloud { layout: usual(name), per_direction: degree + 1 };
     let Some(table) = table else {
         let limits = Limits { face_lebesgue: None, condition: None };
         return Ok(General { cloud: default, limits, named: false, histories: Histories::Nodes });

@@ -41,7 +41,8 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     let mut scheme =
         scheme(scheme_table.as_mut().ok_or_else(|| need("scheme", "add [scheme] with method and degree"))?)?;
     let degree = scheme.degree;
-    let general = super::points::cloud(cloud_table.as_mut(), degree)?;
+    let boundaries = boundaries(boundary_tables, degree)?;
+    let general = super::points::cloud(cloud_table.as_mut(), degree, boundaries.iter().any(Boundary::presses))?;
     if material_tables.is_empty() {
         return Err(need("material", "add [[material]] with law, density and the law's parameters"));
     }
@@ -61,7 +62,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         cloud: general.cloud,
         limits: general.limits,
         exact: exact(exact_table.as_mut(), initial_table.is_none(), degree)?,
-        boundaries: boundaries(boundary_tables, degree)?,
+        boundaries,
         sources: source_tables.into_iter().map(|table| source(table, degree)).collect::<Result<_>>()?,
         curl: chosen(curl_table.as_mut(), &tables::CURL[0], (&CONTROLS, controls::DEFAULT), degree)?,
         limiter,
@@ -126,7 +127,8 @@ fn scheme(table: &mut Reader) -> Result<Scheme> {
         None if time_degree == degree => Sweeps::Ladder,
         None => Sweeps::Paper,
     };
-    Ok(Scheme { method, degree, time_degree, flux, step, sweeps })
+    let angular_momentum = values.boolean("angular_momentum");
+    Ok(Scheme { method, degree, time_degree, flux, step, sweeps, angular_momentum })
 }
 
 fn materials(tables: &mut [Reader], general: &General, degree: usize) -> Result<Vec<Material>> {

@@ -65,7 +65,9 @@ pub(super) const LAYOUT: Parameter = key(
     "where the points stand",
     "",
     Form::Name(|| LAYOUTS.names(), &[]),
-    Preset::Absent("`\"paper\"`; from degree 3 on `\"midpoints\"`; for laws with internal variables `\"gauss\"`"),
+    Preset::Absent(
+        "`\"paper\"`; from degree 3 on `\"midpoints\"`; for laws with internal variables, and in scenes with contact or obstacles, `\"gauss\"`",
+    ),
 );
 
 pub(super) const LIMITS: [Parameter; 2] = [
@@ -183,6 +185,13 @@ pub(super) const SCHEME: &[Parameter] = &[
         "",
         Form::Name(|| of(Sweeps::NAMES), &[]),
         Preset::Absent("`\"ladder\"`; with another time_degree `\"paper\"`"),
+    ),
+    key(
+        "angular_momentum",
+        "whether each body keeps its angular momentum to rounding: after each step it turns as little as that takes; not with a [[source]]",
+        "",
+        Form::Boolean,
+        Preset::Boolean(false),
     ),
 ];
 

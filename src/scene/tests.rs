@@ -71,6 +71,7 @@ fn defaults() {
         flux: plain(&FLUXES, "dual"),
         step: Step::Safety(0.9),
         sweeps: Sweeps::Ladder,
+        angular_momentum: false,
     };
     assert_eq!(scene.scheme, scheme);
     assert!(scene.outputs.is_empty() && scene.sources.is_empty());

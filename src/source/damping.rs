@@ -19,6 +19,10 @@ impl Source for Damping {
         if self.share.is_some() { Varies { velocity: true, ..Varies::PLACE_AND_TIME } } else { Varies::VELOCITY }
     }
 
+    fn decay(&self) -> f64 {
+        self.rate
+    }
+
     fn acceleration(&self, x: [f64; 2], time: f64, v: [f64; 2], material: usize) -> [f64; 2] {
         if self.material.is_some_and(|only| only != material) {
             return [0.0; 2];

@@ -46,6 +46,11 @@ pub trait Source: Send + Sync {
         Varies::PLACE_AND_TIME
     }
 
+    /// The largest rate at which b slows v down, |db/dv|, 1/s: it limits the step. 0 unless said otherwise.
+    fn decay(&self) -> f64 {
+        0.0
+    }
+
     /// b in m/s^2, at X (m) in the cells with law number `material`, at a time (s) and with the velocity v (m/s) there.
     fn acceleration(&self, x: [f64; 2], time: f64, v: [f64; 2], material: usize) -> [f64; 2];
 }

@@ -188,14 +188,14 @@ impl Work {
         balance.source_work += by_sources;
         balance.jumps += flux + boundary;
         let [before, after] = self.corrections.as_ref().map_or([0.0; 2], |memory| memory.loss);
-        balance.correction_dissipation += before + after;
+        balance.correction_dissipation += before + after + self.turning_loss;
         balance.curl_dissipation += corrected - (energy + after);
         let lost = balance.energy - before + (by_boundary + by_sources + between) - corrected;
         let all = flux.abs() + boundary.abs();
         let at_boundary = if all > 0.0 { lost * (boundary.abs() / all) } else { 0.0 };
         balance.boundary_dissipation += at_boundary;
         balance.flux_dissipation += lost - at_boundary;
-        balance.energy = energy;
+        balance.energy = energy - self.turning_loss;
     }
 }
 

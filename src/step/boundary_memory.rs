@@ -72,6 +72,13 @@ impl BoundaryMemory {
         let first = (first + count * point as u32) as usize;
         &mut numbers[first..first + count as usize]
     }
+
+    /// Those of all points of a face among the numbers of its block.
+    pub fn of_face<'a>(&self, numbers: &'a mut [f64], [block, face, lane]: [usize; 3], points: usize) -> &'a mut [f64] {
+        let Some(faces) = self.faces.get(block) else { return &mut [] };
+        let (first, count) = faces[face][lane];
+        &mut numbers[first as usize..][..count as usize * points]
+    }
 }
 
 /// A boundary point whose condition has memory.

@@ -47,18 +47,27 @@ pub struct EnergyMade {
     pub time: f64,
     /// After so many steps.
     pub step: usize,
+    /// Whether laws are sampled away from the Gauss nodes, which may be why.
+    pub between_nodes: bool,
 }
 
 /// As a clause, for messages.
 impl std::fmt::Display for EnergyMade {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let EnergyMade { joule, share, time, step } = self;
+        let EnergyMade { joule, share, time, step, between_nodes } = self;
         let percent = 100.0 * share;
         write!(
             f,
             "{joule:.3e} J/m made out of nothing ({percent:.2} % of the energy at the start or the work done), step {step}, \
              t = {time:.6e} s"
-        )
+        )?;
+        match between_nodes {
+            true => write!(
+                f,
+                "; laws sampled at the Gauss nodes ([cloud] layout = \"gauss\") or at more points (per_direction) may make none"
+            ),
+            false => Ok(()),
+        }
     }
 }
 

@@ -91,6 +91,9 @@ impl Finish<'_> {
         let Scratch { nodes, phases, .. } = &mut *self.scratch;
         let meter = flux::Meter { external, forces, balance, memory: &mut *self.memory, phases };
         block.lifted_fluxes(&self.traces, self.meetings, nodes, meter);
+        if let (true, Some(_), Some(forces)) = (built::FORCES, &block.scheme.bodies, self.forces.as_deref_mut()) {
+            block.book_torque(self.state, &nodes.lift, forces);
+        }
         let (metric, nodes) = (block.metric(), &*nodes);
         let held = (block.scheme.flux.looks() == Looks::Displacement).then_some(&nodes.held[..]);
         let lift = &nodes.lift[..];

@@ -279,10 +279,16 @@ impl Block<'_> {
         let line = &self.scheme.operators.line;
         let (face, width) = (sides.face, sides.own.len() / line.m);
         let factor = self.factor();
+        let whole = if built::OBSTACLES && self.scheme.sees_faces {
+            self.fluxes_of_whole_faces(face, sides.own, meter.memory)
+        } else {
+            vec![]
+        };
         for (point, (own, lift)) in sides.own.chunks_exact(width).zip(lift.as_chunks_mut::<UNKNOWNS>().0).enumerate() {
             for lane in 0..LANES {
                 let memory = &mut *meter.memory;
                 let met = sides.met.and_then(|met| self.flux_of_meeting(met, [face, point, lane], own, memory));
+                let met = met.or_else(|| whole.iter().find(|whole| whole.0 == lane).map(|whole| whole.1[point]));
                 let flux = met.or_else(|| self.flux_of_lane(face, point, lane, own, sides.other, memory));
                 let Some(flux) = flux else { continue };
                 let between = self.held_between(face, point, lane, own, sides.other);

@@ -12,7 +12,7 @@
 //! matrix W_i of the whole face, the face points take no more energy than the points of the segment lose.
 
 use super::segments::{
-    Chord, Face, MOST, OVERLAP, Overlap, Point, REACH, SHORTEST, Segment, along, on_face, shared, whole,
+    Chord, DeepestOverlap, Face, MOST, OVERLAP, Point, REACH, SHORTEST, Segment, along, on_face, shared, whole,
 };
 use super::{Law, Scheme};
 use crate::contact::{Interaction, Pairs};
@@ -139,7 +139,7 @@ impl Contacts {
 
 impl Scheme {
     /// The deepest overlap of bodies in `state`; none where no condition pairs any.
-    pub fn overlap(&self, state: &State) -> Option<Overlap> {
+    pub fn overlap(&self, state: &State) -> Option<DeepestOverlap> {
         let mut meetings = Meetings::new(self)?;
         meetings.find(self, state);
         Some(meetings.deepest)
@@ -167,7 +167,7 @@ pub(super) struct Meetings {
     points: Vec<[[f64; 2]; MOST]>,
     ends: Vec<[[f64; 2]; 2]>,
     /// The deepest overlap so far.
-    pub deepest: Overlap,
+    pub deepest: DeepestOverlap,
     /// Pairs that may meet, and the positions of the ends when they were found.
     candidates: Vec<(usize, [usize; 2])>,
     found_at: Vec<[[f64; 2]; 2]>,
@@ -214,7 +214,7 @@ impl Meetings {
                     let found = shared(&chords, points, &line.basis);
                     found.filter(|found| found.is_near(line.m, h, overlap)).inspect(|found| {
                         let depth = -found.mean_gap(line.m);
-                        let new = Overlap { depth, share: depth / h, x: self.ends[faces[0]][0] };
+                        let new = DeepestOverlap { depth, share: depth / h, x: self.ends[faces[0]][0] };
                         self.deepest = self.deepest.or(new);
                     })
                 }

@@ -8,6 +8,7 @@
 
 mod acceleration;
 mod across;
+mod angular_momentum;
 mod at_points;
 mod balance;
 mod begin;
@@ -53,6 +54,7 @@ pub mod sweeps;
 mod tile_memory;
 mod tiles;
 mod volume;
+mod whole_faces;
 mod worst;
 
 pub use crate::operators::curl_free::Relax;
@@ -71,7 +73,7 @@ pub use phase::{Part, Phase, Phases};
 pub use rescue::Rescue;
 pub use runge_kutta::Tableau;
 pub use scheme::{Method, Scheme};
-pub use segments::Overlap;
+pub use segments::DeepestOverlap;
 pub use survey::{Speeds, Survey};
 pub use sweeps::Sweeps;
 
@@ -96,6 +98,8 @@ pub struct Work {
     outside: outside::Outside,
     /// The balance of the step, by block; none where nobody asks for it.
     balance: Option<Vec<balance::BlockBalance>>,
+    /// What the turning of bodies has taken of their energy in the step, J/m; see [`Scheme::keeping_angular_momentum`].
+    turning_loss: f64,
     /// The memory of corrections and rescue; none where there are none.
     corrections: Option<Box<correction::Memory>>,
     /// Where faces meet in the step; none where no condition pairs any.
@@ -133,6 +137,7 @@ impl Work {
             tiles: tile_memory::Tiles::new(scheme, state.components * operators.nodes()),
             outside: outside::Outside::new(scheme),
             balance: None,
+            turning_loss: 0.0,
             corrections: correction::Memory::new(scheme, state),
             meetings: meetings::Meetings::new(scheme),
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
@@ -168,7 +173,7 @@ impl Work {
     }
 
     /// The deepest overlap of bodies in the steps so far; none where no condition pairs any.
-    pub fn overlap(&self) -> Option<Overlap> {
+    pub fn overlap(&self) -> Option<DeepestOverlap> {
         self.meetings.as_ref().map(|meetings| meetings.deepest)
     }
 

@@ -125,6 +125,7 @@ impl Motion {
             }
         };
         if built::FORCES {
+            work.keep_angular_momentum(scheme, state);
             work.receive(scheme, &state.received);
         }
         result

@@ -27,6 +27,8 @@ pub(super) struct FaceForces {
     pub impulse: [[F8; 2]; FACES],
     /// int t*.v* over face and time, J/m.
     pub work: [F8; FACES],
+    /// int x cross t* over face and time, N m s/m, with the positions at the start of the step; 0 where angular momentum is not kept.
+    pub torque: [F8; FACES],
 }
 
 /// That of all blocks on which something outside acts; the others have no entry.
@@ -56,8 +58,9 @@ impl Outside {
             out.first.push(out.cells.len() as u32);
         }
         out.entries = vec![ExternalWork::default(); out.cells.len()];
-        // The work between faces is told from that of the outside by them.
-        out.forces = scheme.contacts.as_ref().map(|_| vec![FaceForces::default(); out.cells.len()]);
+        // The work between faces is told from that of the outside by them; and the torque on each body is metered with them.
+        let metered = scheme.contacts.is_some() || scheme.keeps_angular_momentum();
+        out.forces = metered.then(|| vec![FaceForces::default(); out.cells.len()]);
         out
     }
 

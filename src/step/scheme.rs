@@ -60,6 +60,10 @@ pub struct Scheme {
     pub corrections: Vec<Arc<dyn Correction>>,
     /// Which cells are stepped again at order 0; none where it is off.
     pub rescue: Option<Rescue>,
+    /// Whether a condition looks at whole faces.
+    pub(super) sees_faces: bool,
+    /// The bodies whose angular momentum is kept; none where that is off.
+    pub(super) bodies: Option<super::angular_momentum::Bodies>,
     /// The instruction set.
     pub kernel: Kernel,
     /// Hash of the scene that it was made from, for files that say where a state comes from; empty where there is none.
@@ -110,6 +114,7 @@ impl Scheme {
         }
         let (histories, boundary_memory) =
             (Histories::new(&operators, &laws), BoundaryMemory::new(&operators, &boundaries));
+        let sees_faces = boundaries.iter().any(|boundary| boundary.sees_faces());
         let (sources, corrections, curl, kernel) = (vec![], vec![], None, Kernel::widest());
         Ok(Self {
             operators,
@@ -124,9 +129,21 @@ impl Scheme {
             curl,
             corrections,
             rescue: None,
+            sees_faces,
+            bodies: None,
             kernel,
             scene: String::new(),
         })
+    }
+
+    /// Whether the predictor samples laws away from the Gauss nodes. The stress at the nodes is then a fit of that at the points, whose power is
+    /// not the rate of the strain energy of a nonlinear law.
+    pub fn samples_between_nodes(&self) -> bool {
+        let between = |points: &crate::operators::Points| {
+            let are_nodes = |matrices: &_| matches!(matrices, crate::operators::PointMatrices::Nodes(_));
+            !points.pool.own.is_empty() || !points.pool.shared.iter().all(are_nodes)
+        };
+        matches!(self.method, Method::Ader { .. }) && self.operators.points.as_ref().is_some_and(between)
     }
 
     /// With sources of momentum.

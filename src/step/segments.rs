@@ -261,7 +261,7 @@ impl Segment {
 
 /// The deepest overlap of two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Overlap {
+pub struct DeepestOverlap {
     /// The mean of a segment of two faces, m.
     pub depth: f64,
     /// The same over the length h_e of the smaller cell. Beyond 1 faces are no pair any more.
@@ -270,10 +270,10 @@ pub struct Overlap {
     pub x: [f64; 2],
 }
 
-impl Overlap {
+impl DeepestOverlap {
     /// The deeper one, by the share of a cell.
     #[must_use]
-    pub fn or(self, other: Overlap) -> Overlap {
+    pub fn or(self, other: DeepestOverlap) -> DeepestOverlap {
         if other.share > self.share { other } else { self }
     }
 }

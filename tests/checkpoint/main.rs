@@ -7,7 +7,7 @@ mod bits;
 mod common;
 mod faults;
 mod folders;
-mod order;
 mod full;
+mod order;
 mod signals;
 mod verify;

@@ -128,7 +128,7 @@ pub fn advanced(problem: &Problem, mesh: &Mesh, scheme: &Scheme) -> Option<State
 pub fn advance_to(problem: &Problem, mesh: &Mesh, scheme: &Scheme, from: Option<State>, end: f64) -> Option<State> {
     let mut state = from.unwrap_or_else(|| start(problem, mesh, scheme));
     let courant = problem.safety * cfl::limit(&scheme.method, scheme.operators.degree);
-    let settings = Settings { end, courant, watch: None };
+    let settings = Settings { end, courant, decay: 0.0, watch: None };
     let interrupt = AtomicBool::new(false);
     let mut run = Run { mesh, scheme, settings, observers: vec![], interrupt: &interrupt };
     run.advance(&mut state, &mut Report::default()).ok().map(|()| state)

@@ -197,3 +197,61 @@ proptest! {
         }
     }
 }
+
+/// A tip that stands out from below, at height `y` over the face from (0, 0) to (1, 0) of a body above it.
+fn spike(x: f64, y: f64, friction: f64) -> Obstacle {
+    let shape = Shape::Polygon { corners: vec![[x - 0.1, -1.0], [x + 0.1, -1.0], [x, y]] };
+    Obstacle { shape, velocity: None, friction }
+}
+
+proptest! {
+    /// A tip between the points holds the face where it is, by a force that is shared out over the points; at rest it never makes energy.
+    #[test]
+    fn a_tip_between_the_points_of_a_face_holds_it_and_never_makes_energy(
+        f in [-0.15..0.15, -0.15..0.15, -0.15..0.15, -0.15..0.15],
+        v in prop::array::uniform3([-0.5..0.5, -0.5..0.2]),
+        place in 0.02..0.98,
+        depth in 0.0..0.03,
+        friction in prop_oneof![Just(0.0), 0.0..2.0],
+    ) {
+        let (basis, n) = (crate::basis::Lagrange::new(2), [0.0, -1.0]);
+        let law = NeoHookean::new(1.0, 0.3, 1.3);
+        let f: [f64; 4] = std::array::from_fn(|k| f[k] + [1.0, 0.0, 0.0, 1.0][k]);
+        let inside = v.map(|v| Trace { f, v, t: times(law.stress(f), n), c: law.speeds(f, n) });
+        let points = [0, 1, 2].map(|i| FacePoint { x: [basis.nodes[i], 0.0], ..at(n, 1.0) });
+        let face = WholeFace { ends: [[0.0; 2], [1.0, 0.0]], points: &points, inside: &inside, basis: &basis };
+        let (mut memory, mut flux) = ([0.0; 6], [[0.0; 6]; 3]);
+        let obstacle = spike(place, depth, friction);
+        // It comes at the face where v* of the free face goes down, unless a point holds it already.
+        prop_assume!(obstacle.face_flux(&face, &step(0.1), &mut memory, &mut flux));
+        let stars = flux.map(|flux| star_of(flux, n));
+        let at_tip = basis.values(place).iter().zip(&stars).map(|(l, (v, _))| l * v[1]).sum::<f64>();
+        let sum = |of: &dyn Fn(usize) -> f64| basis.weights.iter().enumerate().map(|(i, w)| w * of(i)).sum::<f64>();
+        let force = sum(&|i| stars[i].1[1]);
+        let work = sum(&|i| dot(stars[i].0, stars[i].1));
+        let loss = sum(&|i| loss_and_work(&inside[i], flux[i], n).0);
+        // Roundings of tractions and velocities of size 1, and of a spread of forces over the weights of 5/18.
+        prop_assert!(force > 0.0 && at_tip >= -1e-12, "force {force:e}, velocity {at_tip:e}");
+        prop_assert!(work <= 1e-12 && loss - work >= -1e-12, "loss {loss:e}, work {work:e}");
+        for (i, (v, _)) in stars.iter().enumerate() {
+            (0..2).for_each(|k| assert!((memory[2 * i + k] - 0.1 * v[k]).abs() < 1e-15));
+        }
+    }
+}
+
+#[test]
+fn a_tip_acts_on_the_side_of_a_thin_body_that_it_comes_to_and_not_before_it_is_there() {
+    let (basis, rest) = (crate::basis::Lagrange::new(2), [1.0, 0.0, 0.0, 1.0]);
+    let law = NeoHookean::new(1.0, 0.3, 1.3);
+    let acts = |n: [f64; 2], obstacle: &dyn Boundary| {
+        let inside = [Trace { f: rest, v: [0.0, -0.3], t: [0.0; 2], c: law.speeds(rest, n) }; 3];
+        let points = [0, 1, 2].map(|i| FacePoint { x: [basis.nodes[i], 0.0], ..at(n, 1.0) });
+        let face = WholeFace { ends: [[0.0; 2], [1.0, 0.0]], points: &points, inside: &inside, basis: &basis };
+        obstacle.face_flux(&face, &step(0.1), &mut [0.0; 6], &mut [[0.0; 6]; 3])
+    };
+    let disc = |y: f64| Obstacle { shape: Shape::Disc { centre: [0.31, y], radius: 0.01 }, ..spike(0.3, 0.0, 0.0) };
+    assert!(acts([0.0, -1.0], &spike(0.3, 0.01, 0.0)) && acts([0.0, -1.0], &disc(-0.005)));
+    assert!(!acts([0.0, -1.0], &spike(0.3, -0.01, 0.0)) && !acts([0.0, -1.0], &disc(-0.015)));
+    // Of a side that looks up, the same spike is behind.
+    assert!(!acts([0.0, 1.0], &spike(0.3, 0.01, 0.0)));
+}

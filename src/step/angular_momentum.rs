@@ -1,0 +1,249 @@
+//! Angular momentum that each body keeps: the least change of its momentum that makes its angular momentum follow the torque from outside.
+//!
+//! (F, p) schemes keep momentum, and angular momentum only to their order: d/dt int x cross p has the term int (grad x - F) P^T, and what
+//! interface fluxes take. After a step each body (cells that are connected through edges) turns a little:
+//!
+//! ```text
+//! p <- p + rho0 omega E (x - x_c),    omega = (dt sum W x_n cross t* - change of int x cross p) / int rho0 |x - x_c|^2,    E = (0, -1; 1, 0)
+//! ```
+//!
+//! Of all changes of p it is the one with the least kinetic energy that leaves momentum and gives this angular momentum (two Lagrange
+//! multipliers: Lee, Gil, Bonet, Comput. Struct. 118, 2013, who keep both in each step by such a projection). x_n are the positions at the
+//! start of the step, in which contact without friction has no torque on a pair: what one body gets the other one gives.
+
+use super::block::Block;
+use super::outside::FaceForces;
+use super::{Scheme, Work};
+use crate::error::{Error, Result};
+use crate::lane::{F8, LANES};
+use crate::mesh::{FACES, map};
+use crate::operators::{Neighbour, Operators};
+use crate::state::{State, UNKNOWNS};
+use crate::tensor::DEFORMATION;
+
+/// The bodies of a mesh: the block and the lane of each of their cells, in the order of the mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Bodies {
+    cells: Vec<Vec<[usize; 2]>>,
+    /// The body of each cell of the mesh.
+    of_cell: Vec<usize>,
+}
+
+impl Bodies {
+    fn new(operators: &Operators) -> Self {
+        let blocks = &operators.blocks;
+        let mut body_of = vec![usize::MAX; blocks.slot.len()];
+        let mut count = 0;
+        for first in 0..body_of.len() {
+            if body_of[first] != usize::MAX {
+                continue;
+            }
+            let mut next = vec![first];
+            while let Some(cell) = next.pop() {
+                if body_of[cell] != usize::MAX {
+                    continue;
+                }
+                body_of[cell] = count;
+                let (block, lane) = blocks.slot[cell];
+                next.extend(blocks.neighbours[block].iter().filter_map(|lanes| match lanes[lane] {
+                    Neighbour::Cell(across) | Neighbour::Interface(across, _) => {
+                        Some(blocks.cells[across.face / FACES][across.lane])
+                    }
+                    Neighbour::Boundary(_) | Neighbour::Padding => None,
+                }));
+            }
+            count += 1;
+        }
+        let mut cells = vec![vec![]; count];
+        for (cell, &body) in body_of.iter().enumerate() {
+            let (block, lane) = blocks.slot[cell];
+            cells[body].push([block, lane]);
+        }
+        Self { cells, of_cell: body_of }
+    }
+}
+
+/// What the motion of a body adds up to.
+#[derive(Default)]
+struct Sums {
+    mass: f64,
+    /// int rho0 x.
+    first: [f64; 2],
+    /// int rho0 |x|^2.
+    second: f64,
+    /// int p.
+    momentum: [f64; 2],
+    /// int x cross p.
+    angular: f64,
+    /// Its change in the step.
+    change: f64,
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+impl Scheme {
+    /// With angular momentum that each body keeps. States must have the displacement, and steps must meter forces.
+    ///
+    /// # Errors
+    /// Sources, whose torque is not metered.
+    pub fn keeping_angular_momentum(mut self) -> Result<Self> {
+        if !self.sources.is_empty() {
+            let what = "angular momentum is kept only where no source acts: the torque of sources is not metered";
+            return Err(Error::input(what, "remove `angular_momentum` of [scheme], or the [[source]]"));
+        }
+        self.bodies = Some(Bodies::new(&self.operators));
+        Ok(self)
+    }
+
+    /// Whether each body keeps its angular momentum.
+    pub fn keeps_angular_momentum(&self) -> bool {
+        self.bodies.is_some()
+    }
+}
+
+impl Block<'_> {
+    /// Books the torque of the conditions at the block about the origin, from the lifted numbers of its faces, [face][point][6]; `state` is that
+    /// at the start of the step.
+    pub(super) fn book_torque(&self, state: &State, lift: &[F8], forces: &mut FaceForces) {
+        let (operators, line) = (&self.scheme.operators, &self.scheme.operators.line);
+        let (m, n) = (line.m, operators.nodes());
+        let u = &self.unknowns(state)[UNKNOWNS * n..];
+        for (face, neighbours) in operators.blocks.neighbours[self.number].iter().enumerate() {
+            for lane in (0..LANES).filter(|lane| matches!(neighbours[*lane], Neighbour::Boundary(_))) {
+                let corners = operators.geometry.corners_of(self.number, lane);
+                for point in 0..m {
+                    let node = |j: usize| if face < 2 { j * m + point } else { point * m + j };
+                    let moved = |axis: usize| -> f64 {
+                        (0..m).map(|j| line.ends[face % 2][j] * u[axis * n + node(j)].0[lane]).sum()
+                    };
+                    let at = map::position(&corners, super::segments::on_face(face, line.basis.nodes[point]));
+                    let lift = &lift[UNKNOWNS * (m * face + point) + DEFORMATION..];
+                    // The flux of momentum is -t*, and its lifted numbers are those times the length of the face.
+                    let force = [0, 1].map(|k| -line.basis.weights[point] * self.factor() * lift[k].0[lane]);
+                    forces.torque[face].0[lane] += cross([at[0] + moved(0), at[1] + moved(1)], force);
+                }
+            }
+        }
+    }
+}
+
+impl Work {
+    /// Turns each body of the new state so that its angular momentum has changed by the torque from outside, cells in a fixed order. `before`: the state
+    /// that the step began with. Nothing where the scheme does not ask for it.
+    pub(super) fn keep_angular_momentum(&mut self, scheme: &Scheme, before: &State) {
+        let Some(bodies) = &scheme.bodies else { return };
+        let between = self.torque_without_reaction(scheme, bodies);
+        self.turning_loss = 0.0;
+        for (body, between) in bodies.cells.iter().zip(between) {
+            let sums = self.sums_of(scheme, before, body);
+            let centre = sums.first.map(|x| x / sums.mass);
+            let inertia = sums.second - sums.mass * (centre[0] * centre[0] + centre[1] * centre[1]);
+            let turn = (self.torque_on(scheme, body) - between - sums.change) / inertia;
+            // A body that is lost turns no more.
+            if !turn.is_finite() {
+                continue;
+            }
+            self.turn(scheme, body, centre, turn);
+            let spin = sums.angular - cross(centre, sums.momentum);
+            self.turning_loss -= turn * (spin + 0.5 * turn * inertia);
+        }
+    }
+
+    /// The part of each body in what the torques of contact on bodies that touch sum up to, N m s/m: friction between sides that do not quite
+    /// coincide has a torque on the pair, friction times gap. Each body gets of it what its own torque of contact has of all.
+    fn torque_without_reaction(&self, scheme: &Scheme, bodies: &Bodies) -> Vec<f64> {
+        let mut out = vec![0.0; bodies.cells.len()];
+        let (Some(contacts), Some(forces), Some(meetings)) = (&scheme.contacts, &self.outside.forces, &self.meetings)
+        else {
+            return out;
+        };
+        let cells = &scheme.operators.blocks.cells;
+        let body = |face: usize| {
+            let face = &contacts.faces[face];
+            bodies.of_cell[cells[face.face / FACES][face.lane]]
+        };
+        // Bodies that touch have the same, lowest, number.
+        let mut set: Vec<usize> = (0..out.len()).collect();
+        for segment in &meetings.segments {
+            let [a, b] = segment.faces.map(|face| set[body(face)]);
+            set.iter_mut().filter(|set| **set == a.max(b)).for_each(|set| *set = a.min(b));
+        }
+        for (number, face) in contacts.faces.iter().enumerate() {
+            let entry = self.outside.first[face.face / FACES] as usize;
+            out[body(number)] += forces[entry].torque[face.face % FACES].0[face.lane];
+        }
+        let (mut sums, mut sizes) = (vec![0.0; out.len()], vec![0.0; out.len()]);
+        for (torque, &set) in out.iter().zip(&set) {
+            sums[set] += torque;
+            sizes[set] += torque.abs();
+        }
+        for (torque, set) in out.iter_mut().zip(set) {
+            *torque = if sizes[set] > 0.0 { sums[set] * (torque.abs() / sizes[set]) } else { 0.0 };
+        }
+        out
+    }
+
+    /// The impulse of the torque on a body in the step, N m s/m.
+    fn torque_on(&self, scheme: &Scheme, body: &[[usize; 2]]) -> f64 {
+        let Some(forces) = &self.outside.forces else { return 0.0 };
+        let blocks = &scheme.operators.blocks;
+        let of_face = |block: usize, face: usize, lane: usize| match blocks.neighbours[block][face][lane] {
+            Neighbour::Boundary(_) => forces[self.outside.first[block] as usize].torque[face].0[lane],
+            _ => 0.0,
+        };
+        body.iter().map(|&[block, lane]| (0..FACES).map(|face| of_face(block, face, lane)).sum::<f64>()).sum()
+    }
+
+    fn sums_of(&self, scheme: &Scheme, before: &State, body: &[[usize; 2]]) -> Sums {
+        let mut sums = Sums::default();
+        each_node(scheme, body, |[block, lane], a, x, mass, density| {
+            let [[p0, u0], [p1, u1]] = [before, &self.next].map(|state| at_node(scheme, state, [block, lane], a));
+            let at = [x[0] + u1[0], x[1] + u1[1]];
+            sums.mass += mass * density;
+            sums.second += mass * density * (at[0] * at[0] + at[1] * at[1]);
+            (0..2).for_each(|k| sums.first[k] += mass * density * at[k]);
+            (0..2).for_each(|k| sums.momentum[k] += mass * p1[k]);
+            sums.angular += mass * cross(at, p1);
+            sums.change += mass * (cross(at, minus(p1, p0)) + cross(minus(u1, u0), p0));
+        });
+        sums
+    }
+
+    /// p += rho0 turn E (x - centre).
+    fn turn(&mut self, scheme: &Scheme, body: &[[usize; 2]], centre: [f64; 2], turn: f64) {
+        let n = scheme.operators.nodes();
+        let next = &mut self.next;
+        each_node(scheme, body, |[block, lane], a, x, _, density| {
+            let [_, u] = at_node(scheme, next, [block, lane], a);
+            let from = [x[0] + u[0] - centre[0], x[1] + u[1] - centre[1]];
+            let first = block * next.components * n + DEFORMATION * n + a;
+            next.u[first].0[lane] -= density * turn * from[1];
+            next.u[first + n].0[lane] += density * turn * from[0];
+        });
+    }
+}
+
+/// p and u at a node.
+fn at_node(scheme: &Scheme, state: &State, [block, lane]: [usize; 2], a: usize) -> [[f64; 2]; 2] {
+    let n = scheme.operators.nodes();
+    let number = |component: usize| state.u[(block * state.components + component) * n + a].0[lane];
+    [[number(DEFORMATION), number(DEFORMATION + 1)], [number(UNKNOWNS), number(UNKNOWNS + 1)]]
+}
+
+/// Calls `visit` with cell, node, X, w_a J_a and rho0.
+fn each_node(scheme: &Scheme, body: &[[usize; 2]], mut visit: impl FnMut([usize; 2], usize, [f64; 2], f64, f64)) {
+    let (operators, line) = (&scheme.operators, &scheme.operators.line);
+    for &[block, lane] in body {
+        let corners = operators.geometry.corners_of(block, lane);
+        let density = scheme.laws[operators.blocks.material[block]].density();
+        for (a, mass) in operators.geometry.masses(line, block, lane).enumerate() {
+            visit([block, lane], a, map::position(&corners, line.basis.node_2d(a)), mass, density);
+        }
+    }
+}
