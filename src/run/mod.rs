@@ -166,8 +166,7 @@ impl Run<'_, '_> {
     ) -> Result<End, Stop> {
         let wants = |what: fn(&dyn Observer) -> bool| self.observers.iter().any(|observer| what(&**observer));
         let (forces, balance) = (wants(|observer| observer.wants_forces()), wants(|observer| observer.wants_balance()));
-        let metered = forces || self.scheme.keeps_angular_momentum();
-        built::refuse(&[(built::FORCES, metered, "forces"), (built::BALANCE, balance, "the balance of energy")])?;
+        built::refuse(&[(built::FORCES, forces, "forces"), (built::BALANCE, balance, "the balance of energy")])?;
         let mut motion = Motion::unsurveyed(self.scheme, std::mem::take(state));
         if balance {
             motion = motion.with_balance(self.scheme);

@@ -12,7 +12,7 @@
 //! start of the step, in which contact without friction has no torque on a pair: what one body gets the other one gives.
 
 use super::block::Block;
-use super::outside::FaceForces;
+use super::outside::Torques;
 use super::{Scheme, Work};
 use crate::error::{Error, Result};
 use crate::lane::{F8, LANES};
@@ -110,7 +110,7 @@ impl Scheme {
 impl Block<'_> {
     /// Books the torque of the conditions at the block about the origin, from the lifted numbers of its faces, [face][point][6]; `state` is that
     /// at the start of the step.
-    pub(super) fn book_torque(&self, state: &State, lift: &[F8], forces: &mut FaceForces) {
+    pub(super) fn book_torque(&self, state: &State, lift: &[F8], torques: &mut Torques) {
         let (operators, line) = (&self.scheme.operators, &self.scheme.operators.line);
         let (m, n) = (line.m, operators.nodes());
         let u = &self.unknowns(state)[UNKNOWNS * n..];
@@ -126,7 +126,7 @@ impl Block<'_> {
                     let lift = &lift[UNKNOWNS * (m * face + point) + DEFORMATION..];
                     // The flux of momentum is -t*, and its lifted numbers are those times the length of the face.
                     let force = [0, 1].map(|k| -line.basis.weights[point] * self.factor() * lift[k].0[lane]);
-                    forces.torque[face].0[lane] += cross([at[0] + moved(0), at[1] + moved(1)], force);
+                    torques[face].0[lane] += cross([at[0] + moved(0), at[1] + moved(1)], force);
                 }
             }
         }
@@ -159,7 +159,7 @@ impl Work {
     /// coincide has a torque on the pair, friction times gap. Each body gets of it what its own torque of contact has of all.
     fn torque_without_reaction(&self, scheme: &Scheme, bodies: &Bodies) -> Vec<f64> {
         let mut out = vec![0.0; bodies.cells.len()];
-        let (Some(contacts), Some(forces), Some(meetings)) = (&scheme.contacts, &self.outside.forces, &self.meetings)
+        let (Some(contacts), Some(torques), Some(meetings)) = (&scheme.contacts, &self.outside.torques, &self.meetings)
         else {
             return out;
         };
@@ -176,7 +176,7 @@ impl Work {
         }
         for (number, face) in contacts.faces.iter().enumerate() {
             let entry = self.outside.first[face.face / FACES] as usize;
-            out[body(number)] += forces[entry].torque[face.face % FACES].0[face.lane];
+            out[body(number)] += torques[entry][face.face % FACES].0[face.lane];
         }
         let (mut sums, mut sizes) = (vec![0.0; out.len()], vec![0.0; out.len()]);
         for (torque, &set) in out.iter().zip(&set) {
@@ -191,10 +191,10 @@ impl Work {
 
     /// The impulse of the torque on a body in the step, N m s/m.
     fn torque_on(&self, scheme: &Scheme, body: &[[usize; 2]]) -> f64 {
-        let Some(forces) = &self.outside.forces else { return 0.0 };
+        let Some(torques) = &self.outside.torques else { return 0.0 };
         let blocks = &scheme.operators.blocks;
         let of_face = |block: usize, face: usize, lane: usize| match blocks.neighbours[block][face][lane] {
-            Neighbour::Boundary(_) => forces[self.outside.first[block] as usize].torque[face].0[lane],
+            Neighbour::Boundary(_) => torques[self.outside.first[block] as usize][face].0[lane],
             _ => 0.0,
         };
         body.iter().map(|&[block, lane]| (0..FACES).map(|face| of_face(block, face, lane)).sum::<f64>()).sum()

@@ -6,7 +6,7 @@ use super::block::Block;
 use super::block_energy::BlockEnergy;
 use super::lift::Lift;
 use super::meetings::Meetings;
-use super::outside::{ExternalWork, FaceForces};
+use super::outside::{ExternalWork, FaceForces, Torques};
 use super::phase::Clock;
 use super::rotation::Rotation;
 use super::sources::SourceEnd;
@@ -43,6 +43,8 @@ pub(super) struct Finish<'a> {
     pub external: Option<&'a mut ExternalWork>,
     /// The forces at its faces; none where nobody asks for them.
     pub forces: Option<&'a mut FaceForces>,
+    /// The torques there; none where angular momentum is not kept.
+    pub torques: Option<&'a mut Torques>,
     /// Its balance of energy; none where it is off.
     pub balance: Option<&'a mut BlockBalance>,
     /// The memory of the conditions at it.
@@ -91,8 +93,8 @@ impl Finish<'_> {
         let Scratch { nodes, phases, .. } = &mut *self.scratch;
         let meter = flux::Meter { external, forces, balance, memory: &mut *self.memory, phases };
         block.lifted_fluxes(&self.traces, self.meetings, nodes, meter);
-        if let (true, Some(_), Some(forces)) = (built::FORCES, &block.scheme.bodies, self.forces.as_deref_mut()) {
-            block.book_torque(self.state, &nodes.lift, forces);
+        if let Some(torques) = self.torques.as_deref_mut() {
+            block.book_torque(self.state, &nodes.lift, torques);
         }
         let (metric, nodes) = (block.metric(), &*nodes);
         let held = (block.scheme.flux.looks() == Looks::Displacement).then_some(&nodes.held[..]);

@@ -27,9 +27,10 @@ pub(super) struct FaceForces {
     pub impulse: [[F8; 2]; FACES],
     /// int t*.v* over face and time, J/m.
     pub work: [F8; FACES],
-    /// int x cross t* over face and time, N m s/m, with the positions at the start of the step; 0 where angular momentum is not kept.
-    pub torque: [F8; FACES],
 }
+
+/// int x cross t* over each face of a block and time, N m s/m, with the positions at the start of the step.
+pub(super) type Torques = [F8; FACES];
 
 /// That of all blocks on which something outside acts; the others have no entry.
 pub(super) struct Outside {
@@ -41,6 +42,8 @@ pub(super) struct Outside {
     pub entries: Vec<ExternalWork>,
     /// By face, beside the entries; none where nobody asks for forces: nothing is allocated and nothing is done for them then.
     pub forces: Option<Vec<FaceForces>>,
+    /// Beside them; none where angular momentum is not kept.
+    pub torques: Option<Vec<Torques>>,
     /// What the groups receive in a step, impulse and work: memory for their sums.
     sums: Vec<[ExactSum; 3]>,
 }
@@ -49,7 +52,8 @@ impl Outside {
     /// No work on any block of a scheme yet.
     pub fn new(scheme: &Scheme) -> Self {
         let blocks = &scheme.operators.blocks;
-        let mut out = Self { first: vec![0], cells: vec![], entries: vec![], forces: None, sums: vec![] };
+        let mut out =
+            Self { first: vec![0], cells: vec![], entries: vec![], forces: None, torques: None, sums: vec![] };
         for (faces, &count) in blocks.neighbours.iter().zip(&blocks.count) {
             let at_boundary = faces.iter().flatten().any(|beyond| matches!(beyond, Neighbour::Boundary(_)));
             if at_boundary || !scheme.sources.is_empty() {
@@ -58,9 +62,9 @@ impl Outside {
             out.first.push(out.cells.len() as u32);
         }
         out.entries = vec![ExternalWork::default(); out.cells.len()];
-        // The work between faces is told from that of the outside by them; and the torque on each body is metered with them.
-        let metered = scheme.contacts.is_some() || scheme.keeps_angular_momentum();
-        out.forces = metered.then(|| vec![FaceForces::default(); out.cells.len()]);
+        // The work between faces is told from that of the outside by them.
+        out.forces = scheme.contacts.as_ref().map(|_| vec![FaceForces::default(); out.cells.len()]);
+        out.torques = scheme.keeps_angular_momentum().then(|| vec![Torques::default(); out.cells.len()]);
         out
     }
 
@@ -70,6 +74,7 @@ impl Outside {
             + size_of_val(&self.cells[..])
             + size_of_val(&self.entries[..])
             + self.forces.as_ref().map_or(0, |forces| size_of_val(&forces[..]))
+            + self.torques.as_ref().map_or(0, |torques| size_of_val(&torques[..]))
     }
 }
 

@@ -5,7 +5,7 @@ use super::begin::Begin;
 use super::block::Block;
 use super::finish::{Finish, New};
 use super::meetings::Meetings;
-use super::outside::{self, ExternalWork, FaceForces};
+use super::outside::{self, ExternalWork, FaceForces, Torques};
 use super::tile_memory::{Tile, Tiles};
 use super::tiles::{Event, Slot};
 use super::worst::Worst;
@@ -68,6 +68,10 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
                 let own = outside::entry(outside, out.first, forces, number);
                 own.into_iter().for_each(|forces| *forces = FaceForces::default());
             }
+            if let Some(torques) = out.torques.as_deref_mut() {
+                let own = outside::entry(outside, out.first, torques, number);
+                own.into_iter().for_each(|torques| *torques = Torques::default());
+            }
         }
         (step.begin)(Begin {
             block: Block { scheme, stage, number },
@@ -113,6 +117,8 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
         let external = outside::entry(outside, out.first, out.external, number);
         let forces = out.forces.as_deref_mut().filter(|_| built::FORCES);
         let forces = forces.and_then(|forces| outside::entry(outside, out.first, forces, number));
+        let torques = out.torques.as_deref_mut();
+        let torques = torques.and_then(|torques| outside::entry(outside, out.first, torques, number));
         let balance = out.balance.as_mut().and_then(|balance| balance.get_mut(at));
         let memory = (scheme.boundary_memory.range(number), scheme.boundary_memory.range(out.first).start);
         let memory = &mut out.memory[memory.0.start - memory.1..memory.0.end - memory.1];
@@ -126,6 +132,7 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
             new,
             external,
             forces,
+            torques,
             balance,
             memory,
             meetings,
@@ -158,6 +165,8 @@ struct Out<'a> {
     external: &'a mut [ExternalWork],
     /// The forces there; none where nobody asks for them.
     forces: Option<&'a mut [FaceForces]>,
+    /// The torques there; none where angular momentum is not kept.
+    torques: Option<&'a mut [Torques]>,
     /// The balance of the blocks; none where it is off.
     balance: Option<&'a mut [BlockBalance]>,
     /// The memory of boundary conditions.
@@ -176,9 +185,9 @@ impl<'a> Out<'a> {
 
     /// The same for a shorter time.
     fn again(&mut self) -> Out<'_> {
-        let Self { first, u, internal, speed, worst, external, forces, balance, memory } = self;
-        let (forces, balance) = (forces.as_deref_mut(), balance.as_deref_mut());
-        Out { first: *first, u, internal, speed, worst, external, forces, balance, memory }
+        let Self { first, u, internal, speed, worst, external, forces, torques, balance, memory } = self;
+        let (forces, torques, balance) = (forces.as_deref_mut(), torques.as_deref_mut(), balance.as_deref_mut());
+        Out { first: *first, u, internal, speed, worst, external, forces, torques, balance, memory }
     }
 
     /// Those of the first `blocks`, with so many internal variables, entries of `external` and numbers of `memory`, and the rest.
@@ -189,13 +198,14 @@ impl<'a> Out<'a> {
         let (speed, speed2) = self.speed.split_at_mut(blocks);
         let (worst, worst2) = self.worst.split_at_mut(blocks.min(self.worst.len()));
         let (forces, forces2) = self.forces.map(|forces| forces.split_at_mut(external)).unzip();
+        let (torques, torques2) = self.torques.map(|torques| torques.split_at_mut(external)).unzip();
         let (external, external2) = self.external.split_at_mut(external);
         let (balance, balance2) = self.balance.map(|balance| balance.split_at_mut(blocks)).unzip();
         let (memory, memory2) = self.memory.split_at_mut(memory);
-        let left = Out { first, u, internal, speed, worst, external, forces, balance, memory };
+        let left = Out { first, u, internal, speed, worst, external, forces, torques, balance, memory };
         let (first, u, internal, speed, memory) = (second, u2, internal2, speed2, memory2);
-        let (worst, external, forces, balance) = (worst2, external2, forces2, balance2);
-        (left, Out { first, u, internal, speed, worst, external, forces, balance, memory })
+        let (worst, external, forces, torques, balance) = (worst2, external2, forces2, torques2, balance2);
+        (left, Out { first, u, internal, speed, worst, external, forces, torques, balance, memory })
     }
 }
 
@@ -265,9 +275,10 @@ impl Scheme {
             None => (&mut [][..], None),
         };
         let (external, forces) = (&mut outside.entries[..], outside.forces.as_deref_mut());
+        let torques = outside.torques.as_deref_mut();
         let memory = &mut next.boundary[..];
         memory.copy_from_slice(&state.boundary);
-        let mut out = Out { first: 0, u, internal, speed, worst, external, forces, balance, memory };
+        let mut out = Out { first: 0, u, internal, speed, worst, external, forces, torques, balance, memory };
         let count = tiles.len();
         for phase in 0..*phases {
             let start = match &mut starts {
