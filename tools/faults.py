@@ -9,6 +9,7 @@ import argparse
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -168,6 +169,11 @@ OUTPUTS = {
 }
 
 
+def without_numbers(name):
+    """The name of a file without the number of a step or a grid: `snapshots/000120.h5` is `snapshots/.h5`."""
+    return re.sub(r"_?\d+(?=\.)", "", name)
+
+
 def full_at_each_kind(work, disk):
     """A disk without any space at each kind of write: one message, exit code 5, and what was there stays. Rows of a table."""
     rows = []
@@ -213,7 +219,7 @@ def full_at_each_kind(work, disk):
         if not good:
             print(f"full disk, {kind}: exit code {code}, {left}, {errors}", file=sys.stderr)
         name = errors.split("cannot write ")[-1].split(": ")[0] if "cannot write" in errors else "-"
-        out.append([kind, "`" + "".join(c for c in name.removeprefix("disk/") if not c.isdigit()) + "`", code, "yes" if not left else "no"])
+        out.append([kind, f"`{without_numbers(name.removeprefix('disk/'))}`", code, "yes" if not left else "no"])
     return out, bad
 
 
@@ -269,7 +275,7 @@ def corruptions(work, whole, count, dice):
     for path in stopped.rglob("*"):
         name = str(path.relative_to(stopped))
         if path.is_file() and path.stat().st_size > 0:
-            kind = name.split("/")[0] if "/" in name else "".join(c for c in name if not c.isdigit()).replace("_.", ".")
+            kind = name.split("/")[0] if "/" in name else without_numbers(name)
             kinds.setdefault(kind, []).append(name)
     reference = dict(whole)
     out = {kind: {"flips": 0, "found": 0, "harmless": 0, "wrong": 0, "by verify": 0} for kind in sorted(kinds)}
