@@ -156,5 +156,7 @@ fn every_exported_file_is_read_back_as_the_snapshots_have_it() {
         let run = exported(&format!("plate-{degree}"), Path::new("meshes/plate_hole.toml"), &sets);
         python::run(&python, "tests/python/exported_run.py", [run.as_os_str(), "--limit".as_ref(), "1e-12".as_ref()]);
         python::run_dolfinx("tests/python/dolfinx_run.py", [&run]);
+        python::run(&python, "tests/python/run_folder.py", [&run]);
+        python::run_dolfinx("tests/python/run_folder.py", [&run]);
     }
 }

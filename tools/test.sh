@@ -5,12 +5,12 @@ cd "$(dirname "$0")/.."
 
 # DOLFINx belongs to Debian's own python3; it finds no packages of .venv and needs none.
 dolfinx_python=/usr/bin/python3
-has_dolfinx() { "$dolfinx_python" -c 'import dolfinx' 2>/dev/null; }
-has_dolfinx || tools/apt.sh python3-dolfinx-real || true
+has_dolfinx() { "$dolfinx_python" -c 'import dolfinx, h5py' 2>/dev/null; }
+has_dolfinx || tools/apt.sh python3-dolfinx-real python3-h5py || true
 if has_dolfinx; then
     export DGMPM_DOLFINX_PYTHON=$dolfinx_python
 else
-    echo "skipped: the comparisons with DOLFINx (python3-dolfinx-real is not there and could not be installed)"
+    echo "skipped: the comparisons with DOLFINx (python3-dolfinx-real or python3-h5py is not there and could not be installed)"
 fi
 
 export DGMPM_PYTHON=$PWD/.venv/bin/python DGMPM_REQUIRE_PYTHON=1

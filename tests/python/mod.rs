@@ -40,13 +40,13 @@ fn dolfinx() -> Option<PathBuf> {
     static FOUND: LazyLock<Option<PathBuf>> = LazyLock::new(|| {
         let named = std::env::var_os("DGMPM_DOLFINX_PYTHON");
         let python = PathBuf::from(named.clone().unwrap_or_else(|| "/usr/bin/python3".into()));
-        let probe = Command::new(&python).args(["-c", "import dolfinx"]).output();
+        let probe = Command::new(&python).args(["-c", "import dolfinx, h5py"]).output();
         let there = probe.is_ok_and(|probe| probe.status.success());
-        assert!(there || named.is_none(), "DGMPM_DOLFINX_PYTHON: `{}` has no DOLFINx", python.display());
+        assert!(there || named.is_none(), "DGMPM_DOLFINX_PYTHON: `{}` has no DOLFINx or no h5py", python.display());
         there.then_some(python)
     });
     if FOUND.is_none() {
-        println!("SKIP: no DOLFINx: install python3-dolfinx-real, or set DGMPM_DOLFINX_PYTHON");
+        println!("SKIP: no DOLFINx: install python3-dolfinx-real and python3-h5py, or set DGMPM_DOLFINX_PYTHON");
     }
     FOUND.clone()
 }
