@@ -32,8 +32,8 @@ impl Effect {
     }
 }
 
-/// All effects of a run: conditions (a free side is none), sources, the control of the curl, limiter, rescue, balance, changes of
-/// grid, outputs, quantities.
+/// All effects of a run: conditions (a free side is none), sources, the control of the curl, limiter, angular momentum that is kept,
+/// rescue, balance, changes of grid, outputs, quantities.
 pub fn effects(problem: &Problem, report: &Report) -> Vec<Effect> {
     let mut out = conditions(problem, report);
     out.extend(sources(problem, report));
@@ -103,7 +103,10 @@ fn of_the_step(Problem { scene, body, scheme, .. }: &Problem, report: &Report) -
     let curl = (phase(Phase::CurlFree) - in_cells).max(0.0);
     add(scheme.curl.is_some(), format!("curl control {}", scene.curl.name()), curl, matrices);
     let limits = !scheme.corrections.is_empty();
-    add(limits, format!("limiter {}", scene.limiter.name()), phase(Phase::Corrections), report.held.corrections);
+    let turning = report.phases.parts[Part::AngularMomentum as usize];
+    let limiting = (phase(Phase::Corrections) - turning).max(0.0);
+    add(limits, format!("limiter {}", scene.limiter.name()), limiting, report.held.corrections);
+    add(scheme.keeps_angular_momentum(), "angular momentum".to_owned(), turning, report.held.turning);
     add(scheme.rescue.is_some(), "rescue".to_owned(), report.rescue, report.held.rescue);
     add(report.balance.is_some(), "balance of energy".to_owned(), at_faces + in_cells, report.held.balance);
     let (seconds, times) = report.regrids;

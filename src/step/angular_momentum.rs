@@ -13,9 +13,9 @@
 
 use super::block::Block;
 use super::outside::Torques;
-use super::{Scheme, Work};
+use super::{Part, Phase, Scheme, Work};
 use crate::error::{Error, Result};
-use crate::lane::{F8, LANES};
+use crate::lane::{F8, LANES, ticks};
 use crate::mesh::{FACES, map};
 use crate::operators::{Neighbour, Operators};
 use crate::state::{State, UNKNOWNS};
@@ -138,6 +138,7 @@ impl Work {
     /// that the step began with. Nothing where the scheme does not ask for it.
     pub(super) fn keep_angular_momentum(&mut self, scheme: &Scheme, before: &State) {
         let Some(bodies) = &scheme.bodies else { return };
+        let start = ticks();
         let between = self.torque_without_reaction(scheme, bodies);
         self.turning_loss = 0.0;
         for (body, between) in bodies.cells.iter().zip(between) {
@@ -153,6 +154,8 @@ impl Work {
             let spin = sums.angular - cross(centre, sums.momentum);
             self.turning_loss -= turn * (spin + 0.5 * turn * inertia);
         }
+        let scratch = self.scratch[0].get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());
+        scratch.phases.add_both(Phase::Corrections, Part::AngularMomentum, ticks().wrapping_sub(start));
     }
 
     /// The part of each body in what the torques of contact on bodies that touch sum up to, N m s/m: friction between sides that do not quite

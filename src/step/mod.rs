@@ -163,6 +163,7 @@ impl Work {
             balance: self.balance.as_ref().map_or(0, |blocks| size_of_val(&blocks[..])),
             forces: self.outside.forces.as_ref().map_or(0, |forces| size_of_val(&forces[..])),
             corrections: corrections - rescue,
+            turning: self.outside.torques.as_ref().map_or(0, |torques| size_of_val(&torques[..])),
             rescue,
         }
     }
@@ -197,6 +198,8 @@ pub struct Held {
     pub forces: usize,
     /// Limiter and other corrections.
     pub corrections: usize,
+    /// The torques of angular momentum that is kept.
+    pub turning: usize,
     /// The rescue.
     pub rescue: usize,
 }

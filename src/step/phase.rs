@@ -58,10 +58,12 @@ pub enum Part {
     FaceBalance,
     /// The energy of the cells for the balance: with the control of the curl.
     CellBalance,
+    /// Bodies that keep their angular momentum: with the corrections.
+    AngularMomentum,
 }
 
 /// Number of parts.
-pub const PARTS: usize = 4;
+pub const PARTS: usize = 5;
 
 /// Seconds per phase.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -157,6 +159,12 @@ impl Ticks {
     /// Books ticks that passed outside of blocks.
     pub fn add(&mut self, phase: Phase, ticks: u64) {
         self.sums[phase as usize] += ticks;
+    }
+
+    /// Books ticks that passed outside of blocks on a phase, and on a part of it.
+    pub fn add_both(&mut self, phase: Phase, part: Part, ticks: u64) {
+        self.add(phase, ticks);
+        self.parts[part as usize] += ticks;
     }
 
     /// The seconds so far at `rate` ticks each; from here on they count anew.
