@@ -1,6 +1,8 @@
 //! The subcommands.
 
-use super::{bench, effects, export, mesh, preprocess, regrid, resume, run, seed, solve, stability, study, verify};
+use super::{
+    bench, check, effects, export, mesh, preprocess, regrid, resume, run, seed, solve, stability, study, verify,
+};
 use crate::error::Result;
 use clap::Subcommand;
 
@@ -11,6 +13,8 @@ use clap::Subcommand;
 pub enum Command {
     /// Import, make or inspect a mesh of quadrilaterals
     Mesh(mesh::Args),
+    /// Do all of a run but its steps, and say what it will cost; nothing is written
+    Check(check::Args),
     /// Put material points into the cells of a mesh
     Seed(seed::Args),
     /// Compute and store all matrices, and say what the run will cost
@@ -42,6 +46,7 @@ impl Command {
     pub fn run(self) -> Result<()> {
         match self {
             Command::Mesh(args) => mesh::run(&args),
+            Command::Check(args) => check::run(&args),
             Command::Seed(args) => seed::run(&args),
             Command::Preprocess(args) => preprocess::run(&args),
             Command::Solve(args) => solve::run(&args),

@@ -1,12 +1,22 @@
 //! A run whose results are kept in a folder, as `dgmpm run` keeps them.
 
 use super::{Checkpoints, Ended, Files, Outcome, Problem, Solve, check_folder, write_input};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::observe::Observer;
 use crate::run::{Folder, Report};
 use std::sync::atomic::AtomicBool;
 
 impl Problem {
+    /// Makes the outputs and quantities of the scene in a private folder, and drops them.
+    ///
+    /// # Errors
+    /// One that cannot be made, such as a line outside of the body.
+    pub fn check_outputs(&self) -> Result<()> {
+        let private = tempfile::tempdir().map_err(|why| Error::output(&std::env::temp_dir(), why))?;
+        self.observers(&Folder::new(private.path()))?;
+        self.gauge().map(drop)
+    }
+
     /// Steps to the end, and writes input, outputs and summary into a folder; results of an earlier run in it are removed.
     ///
     /// # Errors

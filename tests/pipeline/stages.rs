@@ -7,7 +7,7 @@ use predicates::prelude::*;
 #[test]
 fn every_command_explains_itself() {
     let bench = Bench::empty();
-    for command in ["mesh", "seed", "preprocess", "solve", "run", "export"] {
+    for command in ["check", "mesh", "seed", "preprocess", "solve", "run", "export"] {
         assert!(bench.run("--help").contains(command));
         assert!(bench.run(&format!("{command} --help")).contains("Usage: dgmpm"));
     }
@@ -17,6 +17,18 @@ fn every_command_explains_itself() {
         .assert()
         .success()
         .stdout(predicate::str::starts_with(concat!("dgmpm ", env!("CARGO_PKG_VERSION"))));
+}
+
+#[test]
+fn check_says_what_a_run_will_cost_and_what_is_wrong_and_writes_nothing() {
+    let bench = Bench::new();
+    let before = tree(&bench.path("."));
+    let said = bench.run("check case.toml");
+    assert!(said.contains("first dt") && said.contains("estimate") && said.contains("the scene is complete"), "{said}");
+    // The scene alone is in order; the point is in no cell.
+    let message = bench.fail(2, "check case.toml --set output=[{kind=\"probe\",name=\"p\",point=[9.0,9.0]}]");
+    assert!(message.contains("the point (9, 9) lies outside"), "{message}");
+    assert_eq!(tree(&bench.path(".")), before);
 }
 
 #[test]
