@@ -1,14 +1,10 @@
 //! The subcommands.
-
-use super::{
-    bench, check, effects, export, mesh, preprocess, regrid, resume, run, seed, solve, stability, study, verify,
-};
+use super::*;
 use crate::error::Result;
 use clap::Subcommand;
 
 /// A subcommand with its arguments.
-// Parsed once: its size costs nothing.
-#[allow(clippy::large_enum_variant)]
+#[allow(clippy::large_enum_variant)] // Parsed once: its size costs nothing.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Import, make or inspect a mesh of quadrilaterals

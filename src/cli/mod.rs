@@ -31,9 +31,6 @@ pub use process::{main, run};
 use clap::Parser;
 
 const AFTER_HELP: &str = "\
-Is the scene complete, and what will its run cost:
-  dgmpm check square.toml
-
 All in one go:
   dgmpm run square.toml --set scheme.degree=1 --out runs/square
   dgmpm export runs/square
