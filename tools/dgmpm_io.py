@@ -13,7 +13,7 @@ Needs numpy and h5py; meshio or DOLFINx only where their objects are asked for. 
     last.function("velocity")               # a discontinuous Function of degree N, without loss
 
 Positions are those of the initial configuration. Numbers are in SI units, per metre of thickness. A snapshot has the unknowns that
-dgmpm steps; stresses are made from them by the law of the scene and are in what `dgmpm export` writes.
+dgmpm steps (seals of files are not checked here: `dgmpm verify` does); stresses are made from them by the law of the scene and are in what `dgmpm export` writes.
 """
 
 import json
@@ -163,7 +163,7 @@ class Snapshot:
 
     def in_cells(self, name, xi):
         """A field at parent coordinates [point, 2] of each cell: [cell, point, component]."""
-        xi = np.asarray(xi, float)
+        xi = np.asarray(xi, float).reshape(-1, 2)
         along = [lagrange(self.nodes_1d, xi[:, axis]) for axis in (0, 1)]
         weights = np.einsum("pi,pj->pij", *along).reshape(len(xi), -1)
         return np.einsum("pn,ckn->cpk", weights, self.field(name))
@@ -275,11 +275,15 @@ class Run:
 
     def files(self):
         """The files of snapshots, in the order of steps."""
-        return sorted(file for file in (self.folder / "snapshots").glob("*.h5") if file.stem.isdigit())
+        files = (self.folder / "snapshots").glob("*.h5")
+        return sorted((file for file in files if file.stem.isdigit()), key=lambda file: int(file.stem))
 
     def snapshot(self, file):
         """A snapshot, by its file or its step."""
-        path = Path(file) if not isinstance(file, int) else self.folder / "snapshots" / f"{file:06}.h5"
+        is_step = isinstance(file, int | np.integer)
+        path = self.folder / "snapshots" / f"{file:06}.h5" if is_step else Path(file)
+        if not path.is_file():
+            raise FileNotFoundError(f"no snapshot {path}")
         with h5py.File(path) as store:
             name = store.attrs.get("mesh", "mesh.h5")
         mesh = self.mesh(name.decode() if isinstance(name, bytes) else name)
@@ -304,4 +308,8 @@ class Snapshots:
         return len(self.files)
 
     def __getitem__(self, number):
+        if isinstance(number, slice):
+            return [self.run.snapshot(file) for file in self.files[number]]
+        if not -len(self.files) <= number < len(self.files):
+            raise IndexError(f"{self.run.folder} has {len(self.files)} snapshots")
         return self.run.snapshot(self.files[number])

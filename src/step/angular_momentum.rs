@@ -91,11 +91,16 @@ impl Scheme {
     /// With angular momentum that each body keeps. States must have the displacement, and steps must meter forces.
     ///
     /// # Errors
-    /// Sources, whose torque is not metered.
+    /// Sources, whose torque is not metered; degree 0, which loses so much that the turning would make energy.
     pub fn keeping_angular_momentum(mut self) -> Result<Self> {
         if !self.sources.is_empty() {
             let what = "angular momentum is kept only where no source acts: the torque of sources is not metered";
             return Err(Error::input(what, "remove `angular_momentum` of [scheme], or the [[source]]"));
+        }
+        if self.operators.degree == 0 {
+            let what =
+                "angular momentum is not kept at degree 0: it loses so much that to restore it would make energy";
+            return Err(Error::input(what, "take degree = 1 or more, or remove `angular_momentum` of [scheme]"));
         }
         self.bodies = Some(Bodies::new(&self.operators));
         Ok(self)

@@ -202,6 +202,7 @@ impl Scheme {
         let new =
             new.with_sources(sources).with_corrections(corrections).with_rescue(self.rescue).with_kernel(self.kernel);
         let new = Self { scene: self.scene.clone(), ..new.with_pairings(pairings)? };
+        let new = if self.keeps_angular_momentum() { new.keeping_angular_momentum()? } else { new };
         match self.curl {
             Some(control) => new.with_curl(control),
             None => Ok(new),
