@@ -26,7 +26,7 @@ mod summary;
 mod threads;
 mod verify;
 
-pub use process::{main, run};
+pub use process::main;
 
 use clap::Parser;
 
