@@ -92,7 +92,9 @@ impl Shape {
         let cross_at = |i: usize, j: usize| {
             let ((a, b), (c, d)) = (all[i], all[j]);
             let side = |p, q, x| cross(minus(q, p), minus(x, p));
-            side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
+            // Edges along one line, which are on no side of each other, may be apart.
+            let near = |k: usize| a[k].min(b[k]) <= c[k].max(d[k]) && c[k].min(d[k]) <= a[k].max(b[k]);
+            near(0) && near(1) && side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
         };
         let pairs = (0..all.len()).flat_map(|i| (i + 1..all.len()).map(move |j| (i, j)));
         pairs.filter(|&(i, j)| !neighbours(i, j)).find(|&(i, j)| cross_at(i, j)).map(|(i, j)| [i, j])

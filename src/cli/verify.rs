@@ -38,7 +38,9 @@ pub fn run(args: &Args) -> Result<()> {
     let Repeated { steps, snapshots, rows, differs } = repeat(&folder, args.steps, kernel)?;
     if !differs.is_empty() {
         let what = format!("{} steps done again on {} have other bits than the run", steps, kernel.name());
-        return Err(Error::NotWhole([vec![what], differs].concat()));
+        let hint =
+            "a run that was extended by `resume` is repeated up to its first end alone: give fewer --steps".to_owned();
+        return Err(Error::NotWhole([vec![what], differs, vec![hint]].concat()));
     }
     let (snapshots, rows) = (count(snapshots, "snapshot"), count(rows, "row"));
     say(format!("{steps} steps done again on {}: the same bits in {snapshots} and {rows} of tables", kernel.name()));

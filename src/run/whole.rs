@@ -57,6 +57,10 @@ impl Whole {
     /// Looks at one file.
     fn file(&mut self, folder: &Folder, name: &str, hash: Option<&str>) {
         let path = folder.root.join(name);
+        // A pipe would be read for ever.
+        if path.exists() && !path.is_file() {
+            return self.faults.push(format!("{name} is no file"));
+        }
         let bytes = match std::fs::read(&path) {
             Ok(bytes) => bytes,
             Err(_) if !path.exists() => {

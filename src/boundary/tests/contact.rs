@@ -165,6 +165,11 @@ fn signed_distances_of_shapes_are_those_of_their_nearest_points() {
     let bow = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
     assert_eq!(Shape::crossing(&bow), Some([0, 2]));
     assert_eq!(Shape::crossing(&bow[..3]), None);
+    // Both shoulders of a T lie on one line and do not touch; the lips of a cut without width do.
+    let t = [[-0.5, 0.2], [-0.5, 0.8], [-0.3, 0.8], [-0.3, 0.6], [-0.2, 0.6], [-0.2, 0.4], [-0.3, 0.4], [-0.3, 0.2]];
+    assert_eq!(Shape::crossing(&t), None);
+    let cut = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 0.5], [1.0, 1.0], [0.0, 1.0]];
+    assert!(Shape::crossing(&cut).is_some());
 }
 
 proptest! {
