@@ -97,6 +97,7 @@ mod riemann;
 mod boundary;
 mod contact;
 mod source;
+mod exchange;
 mod step;
 mod limiter;
 mod regrid;
@@ -131,6 +132,9 @@ pub use mesh::{Mesh, links, periodic_links, rectangle};
 pub use operators::{Needs, Operators, Sampling};
 pub use state::State;
 pub use step::{Control, Loss, Method, Motion, Relax, Scheme, Survey, Sweeps, Tableau, Totals, cfl};
+
+// Several programs that step a body together.
+pub use exchange::Exchange;
 
 // What a crate may add: laws, fluxes, conditions, sources, corrections, observers.
 pub use boundary::{
@@ -210,6 +214,9 @@ pub mod parts {
     }
     pub mod source {
         pub use crate::source::*;
+    }
+    pub mod exchange {
+        pub use crate::exchange::*;
     }
     pub mod step {
         pub use crate::step::*;

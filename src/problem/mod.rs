@@ -70,6 +70,7 @@ pub use verify::{Repeated, kernel_of_run, repeat};
 
 use crate::built;
 use crate::error::{Error, Result};
+use crate::exchange::Exchange;
 use crate::io::operators_file;
 use crate::io::snapshot::GridFiles;
 use crate::lane::Kernel;
@@ -111,13 +112,14 @@ pub struct Setup<'a> {
     corrections: Vec<Arc<dyn Correction>>,
     kernel: Kernel,
     store: Option<Store<'a>>,
+    exchange: Option<Arc<dyn Exchange>>,
 }
 
 impl<'a> Setup<'a> {
     /// Everything from the scene, on the widest instruction set of this processor.
     pub fn of(scene: &'a Scene) -> Self {
         let (corrections, kernel) = (vec![], Kernel::widest());
-        Self { scene, mesh: None, points: None, corrections, kernel, store: None }
+        Self { scene, mesh: None, points: None, corrections, kernel, store: None, exchange: None }
     }
 
     /// On this mesh, whose groups are those of the scene.
@@ -149,6 +151,12 @@ impl<'a> Setup<'a> {
     #[must_use]
     pub fn store(self, store: Store<'a>) -> Self {
         Self { store: Some(store), ..self }
+    }
+
+    /// Stepped together with other ranks, each of which builds this problem.
+    #[must_use]
+    pub fn exchange(self, exchange: Arc<dyn Exchange>) -> Self {
+        Self { exchange: Some(exchange), ..self }
     }
 
     /// Mesh and material points alone.
@@ -192,13 +200,16 @@ impl<'a> Setup<'a> {
     /// # Errors
     /// A cell whose points cannot carry the degree; stored matrices that cannot be written.
     pub fn scheme(self, body: &Body) -> Result<(Scheme, String)> {
-        let Self { scene, corrections, kernel, store, .. } = self;
+        let Self { scene, corrections, kernel, store, exchange, .. } = self;
         let (operators, origin) = match store {
             Some(store) => store.operators(scene, body)?,
             None => (body.operators(scene)?, String::new()),
         };
         let mut scheme = scene.build_scheme(&body.mesh, operators, kernel)?;
         scheme.corrections.extend(corrections);
+        if let Some(exchange) = exchange {
+            scheme = scheme.with_exchange(exchange);
+        }
         built::refuse(&[
             (built::SOURCES, !scheme.sources.is_empty(), "a source"),
             (built::CORRECTIONS, !scheme.corrections.is_empty() || scheme.rescue.is_some(), "a limiter or the rescue"),

@@ -54,6 +54,10 @@ impl Pause for Regrids<'_> {
         self.schedules.iter().filter_map(|schedule| schedule.stop(time)).reduce(f64::min)
     }
 
+    fn looks(&self) -> bool {
+        !self.schedules.is_empty()
+    }
+
     fn due(&mut self, view: &View) -> bool {
         let (step, time) = (view.state.step, view.state.time);
         let present = Present { view, cloud: &self.cloud, material: &self.material, start: self.start };

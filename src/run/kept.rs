@@ -72,10 +72,15 @@ impl Kept {
         Self { since: state.step, last: Look::at(state, survey), newer: state.clone(), older: state.clone() }
     }
 
+    /// Whether it looks at a state.
+    pub fn is_due(&self, state: &State) -> bool {
+        state.step >= self.last.step + Self::interval(state.step - self.since)
+    }
+
     /// After a step that went well: `old` is the buffer with the state before it, whose survey this is, and is written over by
     /// the next step. From time to time the state stays, and another buffer takes its place.
     pub fn look(&mut self, old: &mut State, survey: &Survey) {
-        if old.step < self.last.step + Self::interval(old.step - self.since) {
+        if !self.is_due(old) {
             return;
         }
         let look = Look::at(old, survey);

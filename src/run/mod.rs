@@ -93,6 +93,11 @@ pub trait Pause {
     /// Whether the run pauses at this state.
     fn due(&mut self, view: &View) -> bool;
 
+    /// Whether [`Pause::due`] may look at the state.
+    fn looks(&self) -> bool {
+        true
+    }
+
     /// Saves what it needs to go on in a run that is resumed. By default nothing.
     ///
     /// # Errors
@@ -118,6 +123,9 @@ impl Pause for Never {
         None
     }
     fn due(&mut self, _: &View) -> bool {
+        false
+    }
+    fn looks(&self) -> bool {
         false
     }
 }
@@ -177,6 +185,7 @@ impl Run<'_, '_> {
             false => motion.state.received = vec![],
         }
         let end = self.go(pause, keep, &mut motion, report);
+        motion.make_whole(self.scheme);
         *state = motion.state;
         end
     }
@@ -208,10 +217,11 @@ impl Run<'_, '_> {
         let mut kept = Kept::new(&motion.state, &motion.survey);
         let h = self.mesh.smallest_h();
         while motion.state.time < self.settings.end {
-            let (time, stops) = (motion.state.time, self.interrupt.load(Ordering::Relaxed));
+            let (time, stops) = (motion.state.time, motion.any(self.interrupt.load(Ordering::Relaxed)));
             if let Some(keep) = keep.as_deref_mut()
-                && keep.due(&motion.state, stops)
+                && motion.any(keep.due(&motion.state, stops))
             {
+                motion.make_whole(self.scheme);
                 self.keep(keep, (pause, motion), report)?;
             }
             let stop = pause.stop(time).unwrap_or(f64::INFINITY).min(self.next_stop(time));
@@ -219,6 +229,9 @@ impl Run<'_, '_> {
             let dt = step_size(stop - time, stable);
             let next = end_of_step(time, dt, stop);
             check_advance([time, next, self.settings.end], [stable, dt], h)?;
+            if motion.is_shared() && (pause.looks() || kept.is_due(&motion.state) || self.observes(&motion.state, dt)) {
+                motion.make_whole(self.scheme);
+            }
             self.observe(motion, report, dt)?;
             if stops {
                 return Err(Stop::Interrupted);
@@ -231,12 +244,16 @@ impl Run<'_, '_> {
             }
             let (former, survey) = motion.former();
             kept.look(former, survey);
+            if motion.is_shared() && report.looks() {
+                motion.make_whole(self.scheme);
+            }
             match report.count(self.scheme, dt, motion) {
                 Some(Alarm::Stop(made)) => return Err(Stop::EnergyMade(Box::new((made, kept.earlier())))),
                 Some(Alarm::Warning(made)) => self.observers.iter_mut().for_each(|o| o.energy_made(&made)),
                 None => {}
             }
         }
+        motion.make_whole(self.scheme);
         // No step looks at the faces of the last state.
         let mut last = Survey::default();
         if let Err(loss) = self.scheme.survey_all(&motion.state, &motion.work, &mut last) {
@@ -264,6 +281,12 @@ impl Run<'_, '_> {
     /// The time that a step must not pass: the end, or an exact output before it.
     fn next_stop(&mut self, time: f64) -> f64 {
         self.observers.iter_mut().filter_map(|o| o.schedule().stop(time)).fold(self.settings.end, f64::min)
+    }
+
+    /// Whether somebody waits for the state.
+    fn observes(&mut self, state: &State, dt: f64) -> bool {
+        let due = |observer: &mut Box<dyn Observer + '_>| observer.schedule().clone().due(state.step, state.time, dt);
+        self.observers.iter_mut().any(due)
     }
 
     /// Shows the state to those who wait for it.

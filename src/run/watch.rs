@@ -104,6 +104,11 @@ impl Watch {
         self.warned
     }
 
+    /// Whether [`Watch::step`] looks at the energy after the step under way.
+    pub fn looks_next(&self) -> bool {
+        self.limits.is_some() && (self.steps + 1).is_multiple_of(EVERY)
+    }
+
     /// Books the last step, which led to `state`, and looks at the energy where that is due.
     pub fn step(
         &mut self,

@@ -39,6 +39,7 @@ mod motion;
 mod outside;
 pub mod phase;
 mod predictor;
+mod ranks;
 mod rescue;
 mod rotation;
 mod runge_kutta;
@@ -264,6 +265,9 @@ impl Scheme {
         }
         work.next.time = time;
         work.next.step = state.step + 1;
+        if work.is_shared() {
+            work.share(self);
+        }
         if built::CORRECTIONS && work.corrections.is_some() {
             let start = ticks();
             self.correct(state, dt, work);

@@ -124,6 +124,9 @@ impl Motion {
                 scheme.surveyed(work, other)
             }
         };
+        if result.is_err() {
+            work.forget_others();
+        }
         if built::FORCES {
             work.keep_angular_momentum(scheme, state);
             work.receive(scheme, &state.received);

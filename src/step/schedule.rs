@@ -190,6 +190,13 @@ impl<'a> Out<'a> {
         Out { first: *first, u, internal, speed, worst, external, forces, torques, balance, memory }
     }
 
+    /// Those from a block on.
+    fn from(self, block: usize, (scheme, state): (&Scheme, &State), outside: &[u32]) -> Self {
+        let (history, memory) = (scheme.histories.range(block).start, scheme.boundary_memory.range(block).start);
+        let stride = state.components * scheme.operators.nodes();
+        self.split(block, stride, [history, outside[block] as usize, memory]).1
+    }
+
     /// Those of the first `blocks`, with so many internal variables, entries of `external` and numbers of `memory`, and the rest.
     fn split(self, blocks: usize, stride: usize, [internal, external, memory]: [usize; 3]) -> (Self, Self) {
         let (first, second) = (self.first, self.first + blocks);
@@ -268,7 +275,7 @@ impl Scheme {
         finish: impl Fn(Finish) + Copy + Send + Sync,
     ) {
         let Work { tiles, next, speed, outside, balance, scratch, corrections, meetings, .. } = work;
-        let Tiles { tiles, phases, shown, slots, far, .. } = tiles;
+        let Tiles { tiles, phases, shown, slots, far, ranks, .. } = tiles;
         let (u, internal, balance) = (&mut next.u[..], &mut next.internal[..], balance.as_deref_mut());
         let (worst, mut starts) = match corrections.as_deref_mut() {
             Some(memory) => memory.parts(),
@@ -278,15 +285,22 @@ impl Scheme {
         let torques = outside.torques.as_deref_mut();
         let memory = &mut next.boundary[..];
         memory.copy_from_slice(&state.boundary);
+        let numbers = self.block_traces(balance.is_some());
         let mut out = Out { first: 0, u, internal, speed, worst, external, forces, torques, balance, memory };
         let count = tiles.len();
+        let own = ranks.as_ref().map_or(0..count, |ranks| ranks.tiles.clone());
+        if let Some(first) = tiles[own.clone()].first().filter(|_| own.start > 0) {
+            out = out.from(first.plan.range.start, (self, state), &outside.first);
+        }
         for phase in 0..*phases {
             let start = match &mut starts {
                 // Stage by stage, see `Plan::by_stages`.
-                Some(starts) if phase >= 2 && phase % 2 == 0 => starts.of(self, &stages[phase / 2], state, tiles),
+                Some(starts) if phase >= 2 && phase % 2 == 0 => {
+                    starts.of(self, &stages[phase / 2], state, tiles, ranks.as_deref_mut())
+                }
                 _ => state,
             };
-            let (seen, shown) = shown.split_at_mut(phase * count);
+            let (seen, showing) = shown.split_at_mut(phase * count);
             let outside = &outside.first[..];
             let (scheme, far, meetings) = (self, *far, meetings.as_deref());
             let step = Step {
@@ -305,7 +319,10 @@ impl Scheme {
                 phase,
                 seen,
             };
-            step.run(tiles, &mut shown[..count], out.again());
+            step.run(&mut tiles[own.clone()], &mut showing[own.clone()], out.again());
+            if let Some(ranks) = ranks {
+                ranks.swap(phase, shown, numbers);
+            }
         }
     }
 

@@ -6,6 +6,7 @@ use super::{Control, Correction, Flux, Histories, Law, Rescue, Sweeps, Tableau};
 use crate::basis::TimeBasis;
 use crate::boundary::Boundary;
 use crate::error::{Error, Result};
+use crate::exchange::Exchange;
 use crate::lane::Kernel;
 use crate::operators::{Neighbour, Operators};
 use crate::source::Source;
@@ -64,6 +65,8 @@ pub struct Scheme {
     pub(super) sees_faces: bool,
     /// The bodies whose angular momentum is kept; none where that is off.
     pub(super) bodies: Option<super::angular_momentum::Bodies>,
+    /// The ranks that step the body together; none where it runs alone.
+    pub(super) exchange: Option<Arc<dyn Exchange>>,
     /// The instruction set.
     pub kernel: Kernel,
     /// Hash of the scene that it was made from, for files that say where a state comes from; empty where there is none.
@@ -131,6 +134,7 @@ impl Scheme {
             rescue: None,
             sees_faces,
             bodies: None,
+            exchange: None,
             kernel,
             scene: String::new(),
         })
@@ -201,7 +205,7 @@ impl Scheme {
         let (sources, corrections) = (self.sources.clone(), self.corrections.clone());
         let new =
             new.with_sources(sources).with_corrections(corrections).with_rescue(self.rescue).with_kernel(self.kernel);
-        let new = Self { scene: self.scene.clone(), ..new.with_pairings(pairings)? };
+        let new = Self { exchange: self.exchange.clone(), scene: self.scene.clone(), ..new.with_pairings(pairings)? };
         let new = if self.keeps_angular_momentum() { new.keeping_angular_momentum()? } else { new };
         match self.curl {
             Some(control) => new.with_curl(control),
@@ -219,6 +223,12 @@ impl Scheme {
             return Err(Error::input(what, "build the operators with Needs { curl_free: true, .. }"));
         }
         Ok(Self { curl: Some(control), ..self })
+    }
+
+    /// Stepped together with other ranks, all of which have this scheme.
+    #[must_use]
+    pub fn with_exchange(self, exchange: Arc<dyn Exchange>) -> Self {
+        Self { exchange: Some(exchange), ..self }
     }
 
     /// On this instruction set.

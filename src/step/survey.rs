@@ -14,6 +14,7 @@ use crate::operators::with_nodes;
 use crate::state::State;
 use crate::tensor::{self, DEFORMATION};
 use rayon::prelude::*;
+use std::sync::Mutex;
 
 /// What a state tells before it is stepped.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -42,21 +43,30 @@ impl Scheme {
     /// # Errors
     /// The first cell (in the order of the blocks) that lost stability.
     pub fn survey(&self, state: &State, memory: &Memory, out: &mut Survey) -> Result<(), Loss> {
-        let blocks = &self.operators.blocks;
-        let stride = state.components * self.operators.nodes();
-        out.speed.resize(blocks.len(), Speeds::default());
-        let worst = out.speed.par_iter_mut().enumerate().map(|(block, speed)| {
-            with_scratch(&memory.scratch, |scratch| {
-                let u = &state.u[stride * block..stride * (block + 1)];
-                let internal = self.histories.of(&state.internal, block);
-                let (mut worst, history) = (Worst::NONE, History::Now(internal));
-                let law = &self.laws[blocks.material[block]];
-                let examine = Examine { scheme: self, block, u, history, scratch, speed, worst: &mut worst };
-                law.block().examine(self.kernel, examine);
-                worst
-            })
-        });
+        out.speed.resize(self.operators.blocks.len(), Speeds::default());
+        let blocks = out.speed.par_iter_mut().enumerate();
+        let worst = blocks.map(|(block, speed)| self.worst_of_block(state, block, &memory.scratch, speed));
         self.judge(worst.reduce(|| Worst::NONE, Worst::and), state, out)
+    }
+
+    /// Surveys a block of `state` by itself.
+    pub(super) fn worst_of_block(
+        &self,
+        state: &State,
+        block: usize,
+        scratch: &[Mutex<Scratch>],
+        speed: &mut Speeds,
+    ) -> Worst {
+        with_scratch(scratch, |scratch| {
+            let stride = state.components * self.operators.nodes();
+            let u = &state.u[stride * block..stride * (block + 1)];
+            let internal = self.histories.of(&state.internal, block);
+            let (mut worst, history) = (Worst::NONE, History::Now(internal));
+            let law = &self.laws[self.operators.blocks.material[block]];
+            let examine = Examine { scheme: self, block, u, history, scratch, speed, worst: &mut worst };
+            law.block().examine(self.kernel, examine);
+            worst
+        })
     }
 
     /// The survey of the state that the last step made, into `out`, from what the step saw on its way.
@@ -66,8 +76,13 @@ impl Scheme {
     pub(crate) fn surveyed(&self, memory: &mut Memory, out: &mut Survey) -> Result<(), Loss> {
         std::mem::swap(&mut out.speed, &mut memory.speed);
         memory.speed.resize(out.speed.len(), Speeds::default());
+        let worst = memory.tiles.worst();
         let corrected = memory.corrections.as_ref().map_or(&[][..], |memory| &memory.worst);
-        let worst = corrected.iter().fold(memory.tiles.worst(), |worst, block| worst.and(*block));
+        let worst = corrected.iter().fold(worst, |worst, block| worst.and(*block));
+        if worst.lost != usize::MAX || worst.face.is_some() {
+            // Where it was lost is told from the state.
+            memory.fetch(self);
+        }
         self.judge(worst, &memory.next, out)
     }
 

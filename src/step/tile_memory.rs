@@ -1,5 +1,6 @@
 //! The memory of the tiles of a step: rates and traces under way.
 
+use super::ranks::Ranks;
 use super::tiles::{self, Plan, Slot};
 use super::worst::Worst;
 use super::{Scheme, volume};
@@ -32,6 +33,8 @@ pub(super) struct Tiles {
     pub slots: Vec<Slot>,
     /// Whether the unknowns come from memory, see [`FAR`].
     pub far: bool,
+    /// The ranks that step the body together; none where it runs alone.
+    pub ranks: Option<Box<Ranks>>,
 }
 
 impl Tiles {
@@ -42,21 +45,31 @@ impl Tiles {
         if let Some(contacts) = &scheme.contacts {
             contacts.link(&mut graph);
         }
-        let plan = Plan::new(&graph, stages, rayon::current_num_threads().max(1));
+        let threads = rayon::current_num_threads().max(1);
+        let plan = match &scheme.exchange {
+            Some(exchange) => Plan::of_tiles(&graph, stages, threads * exchange.ranks()),
+            None => Plan::new(&graph, stages, threads),
+        };
         // Corrections of stages need all blocks of a stage at once.
         let plan = if scheme.corrects_stages() { plan.by_stages(stages) } else { plan };
         let phases = plan.phases();
-        let tile = |plan: tiles::Tile| {
+        let ranks = Ranks::new(scheme, &graph, &plan, threads);
+        let is_own = |tile: usize| ranks.as_ref().is_none_or(|ranks| ranks.tiles.contains(&tile));
+        let tile = |(number, mut plan): (usize, tiles::Tile)| {
+            if !is_own(number) {
+                (plan.rates, plan.traces) = (0, 0);
+            }
             let rates = vec![F8::ZERO; plan.rates * stages * stride];
             Tile { rates, traces: vec![], worst: Worst::NONE, plan }
         };
         let mut out = Self {
-            tiles: plan.tiles.into_iter().map(tile).collect(),
+            tiles: plan.tiles.into_iter().enumerate().map(tile).collect(),
             phases,
             shown: vec![vec![]; plan.shown.len()],
             shown_slots: plan.shown,
             slots: plan.slots,
             far: blocks.len() * stride * size_of::<F8>() > FAR,
+            ranks,
         };
         out.make_room(scheme.block_traces(false));
         out
@@ -82,8 +95,12 @@ impl Tiles {
     }
 
     /// The worst of all blocks after the last step.
-    pub fn worst(&self) -> Worst {
-        self.tiles.iter().fold(Worst::NONE, |worst, tile| worst.and(tile.worst))
+    pub fn worst(&mut self) -> Worst {
+        let worst = self.tiles.iter().fold(Worst::NONE, |worst, tile| worst.and(tile.worst));
+        match &mut self.ranks {
+            Some(ranks) => ranks.worst(worst),
+            None => worst,
+        }
     }
 
     /// Numbers of eight lanes held.

@@ -9,5 +9,6 @@ mod faults;
 mod folders;
 mod full;
 mod order;
+mod ranks;
 mod signals;
 mod verify;

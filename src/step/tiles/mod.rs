@@ -100,6 +100,11 @@ impl Plan {
         best
     }
 
+    /// A plan for so many tiles of equal size.
+    pub fn of_tiles(graph: &[Vec<usize>], stages: usize, tiles: usize) -> Self {
+        Planner::new(graph, stages, tiles).plan()
+    }
+
     /// The same tiles stage by stage: all blocks begin a stage in one phase, and finish it in the next one.
     pub fn by_stages(mut self, stages: usize) -> Self {
         let (tiles, blocks) = (self.tiles.len(), self.tiles.last().map_or(0, |tile| tile.range.end));

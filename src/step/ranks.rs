@@ -1,0 +1,356 @@
+//! A step on several ranks.
+//!
+//! A rank has tiles of the plan as a thread has: [`super::tiles`] knows which traces a tile shows to others and in which phase, and
+//! between phases ranks send each other those that they need. Nothing is computed twice and nothing in another order, so that the
+//! bits do not depend on the number of ranks.
+//!
+//! Each rank has memory for the whole state. After a step it knows its own blocks; [`Motion::make_whole`] fetches the others where
+//! somebody looks at them. Corrections, contact, and angular momentum that is kept look at the whole body in each step.
+
+use super::balance::BlockBalance;
+use super::loss::FacePoint;
+use super::outside::{ExternalWork, FaceForces, Torques};
+use super::tile_memory::Tiles;
+use super::tiles::{Plan, Slot};
+use super::worst::Worst;
+use super::{Motion, Scheme, Speeds, Work};
+use crate::exchange::Exchange;
+use crate::lane::{F8, LANES};
+use crate::mesh::FACES;
+use crate::operators::Neighbour;
+use crate::state::State;
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// What a rank knows of itself and the others.
+pub(super) struct Ranks {
+    exchange: Arc<dyn Exchange>,
+    /// The tiles of this rank.
+    pub tiles: Range<usize>,
+    /// The first block of each rank, and the end of the last one.
+    blocks: Vec<usize>,
+    /// What is sent and received after each phase: `[phase][rank]`.
+    send: Vec<Vec<Vec<Face>>>,
+    receive: Vec<Vec<Vec<Face>>>,
+    /// Messages under way.
+    letters: [Vec<Vec<f64>>; 2],
+    /// Numbers under way to all.
+    all: Vec<f64>,
+    /// Whether the last step has left this rank with the blocks of all.
+    whole: bool,
+}
+
+/// The traces of a face of a block, where a tile shows them.
+#[derive(Debug, Clone, Copy)]
+struct Face {
+    store: usize,
+    slot: usize,
+    face: usize,
+}
+
+impl Face {
+    /// Where its numbers are, with so many a block.
+    fn range(&self, numbers: usize) -> Range<usize> {
+        let first = 1 + self.slot * numbers + self.face * (numbers / FACES);
+        first..first + numbers / FACES
+    }
+}
+
+impl Ranks {
+    /// Those of a scheme, for a plan of so many tiles a rank; none where it runs alone.
+    pub fn new(scheme: &Scheme, graph: &[Vec<usize>], plan: &Plan, tiles: usize) -> Option<Box<Self>> {
+        let exchange = scheme.exchange.clone()?;
+        let (count, blocks) = (plan.tiles.len(), scheme.operators.blocks.len());
+        let of = |rank: usize| (rank * tiles).min(count)..((rank + 1) * tiles).min(count);
+        let first = |rank: usize| plan.tiles.get(rank * tiles).map_or(blocks, |tile| tile.range.start);
+        let mut out = Self {
+            tiles: of(exchange.rank()),
+            blocks: (0..=exchange.ranks()).map(first).collect(),
+            send: vec![vec![vec![]; exchange.ranks()]; plan.phases()],
+            receive: vec![vec![vec![]; exchange.ranks()]; plan.phases()],
+            letters: [0, 1].map(|_| vec![vec![]; exchange.ranks()]),
+            all: vec![],
+            whole: true,
+            exchange,
+        };
+        for rank in 0..out.exchange.ranks() {
+            let needs = out.needed_by(rank, scheme, graph);
+            out.list(rank, &needs, &plan.slots, count, blocks);
+        }
+        Some(Box::new(out))
+    }
+
+    /// Faces (FACES block + face) of other ranks whose traces a rank reads.
+    fn needed_by(&self, rank: usize, scheme: &Scheme, graph: &[Vec<usize>]) -> BTreeSet<usize> {
+        let own = self.blocks[rank]..self.blocks[rank + 1];
+        let mut needs = BTreeSet::new();
+        for block in own.clone() {
+            for neighbour in scheme.operators.blocks.neighbours[block].iter().flatten() {
+                if let Neighbour::Cell(across) | Neighbour::Interface(across, _) = neighbour {
+                    needs.insert(across.face);
+                }
+            }
+            if scheme.contacts.is_some() {
+                // Which of its faces meet changes from step to step.
+                needs.extend(graph[block].iter().flat_map(|near| FACES * near..FACES * (near + 1)));
+            }
+        }
+        needs.retain(|face| !own.contains(&(face / FACES)));
+        needs
+    }
+
+    /// Lists what is sent and received so that a rank has what it needs.
+    fn list(&mut self, rank: usize, needs: &BTreeSet<usize>, slots: &[Slot], tiles: usize, blocks: usize) {
+        let own = self.exchange.rank();
+        for (stage, &needed) in (0..slots.len() / blocks.max(1)).flat_map(|stage| needs.iter().map(move |n| (stage, n)))
+        {
+            let (block, face) = (needed / FACES, needed % FACES);
+            let from = self.blocks.partition_point(|first| *first <= block) - 1;
+            let slot = slots[stage * blocks + block];
+            let Some(store) = (slot.store as usize).checked_sub(1) else { continue };
+            let face = Face { store, slot: slot.index as usize, face };
+            if from == own {
+                self.send[store / tiles][rank].push(face);
+            }
+            if rank == own {
+                self.receive[store / tiles][from].push(face);
+            }
+        }
+    }
+
+    /// Gives others the traces that this rank has shown in a phase, and takes theirs; `numbers` are those of a block.
+    pub fn swap(&mut self, phase: usize, shown: &mut [Vec<F8>], numbers: usize) {
+        let [send, receive] = &mut self.letters;
+        for (letter, faces) in send.iter_mut().zip(&self.send[phase]) {
+            letter.clear();
+            for face in faces {
+                shown[face.store][face.range(numbers)].iter().for_each(|number| letter.extend_from_slice(&number.0));
+            }
+        }
+        for (letter, faces) in receive.iter_mut().zip(&self.receive[phase]) {
+            letter.resize(faces.len() * (numbers / FACES) * LANES, 0.0);
+        }
+        self.exchange.swap(send, receive);
+        for (letter, faces) in receive.iter().zip(&self.receive[phase]) {
+            let mut letter = letter.as_chunks().0.iter();
+            for face in faces {
+                let numbers = shown[face.store][face.range(numbers)].iter_mut();
+                numbers.zip(&mut letter).for_each(|(to, from)| to.0 = *from);
+            }
+        }
+    }
+
+    /// Gives all ranks what each has of `all`, rank r those of its blocks; numbers of block b begin at `first(b)`.
+    pub fn gather<T: Numbers>(&mut self, all: &mut [T], first: impl Fn(usize) -> usize) {
+        let first: Vec<usize> = self.blocks.iter().map(|block| first(*block)).collect();
+        let (rank, count) = (self.exchange.rank(), T::COUNT);
+        self.all.clear();
+        self.all.resize(all.len() * count, 0.0);
+        let own = first[rank]..first[rank + 1];
+        for (to, from) in self.all.chunks_exact_mut(count).zip(all.iter()).take(own.end).skip(own.start) {
+            from.write(to);
+        }
+        let ends: Vec<usize> = first.iter().map(|first| first * count).collect();
+        self.exchange.gather(&mut self.all, &ends);
+        for (number, (to, from)) in all.iter_mut().zip(self.all.chunks_exact(count)).enumerate() {
+            if !own.contains(&number) {
+                to.read(from);
+            }
+        }
+    }
+
+    /// The worst of the blocks of all ranks, from that of its own.
+    pub fn worst(&mut self, own: Worst) -> Worst {
+        let (rank, ranks) = (self.exchange.rank(), self.exchange.ranks());
+        let mut all = vec![Worst::NONE; ranks];
+        all[rank] = own;
+        let mut numbers = vec![0.0; ranks * Worst::COUNT];
+        own.write(&mut numbers[rank * Worst::COUNT..][..Worst::COUNT]);
+        let ends: Vec<usize> = (0..=ranks).map(|rank| rank * Worst::COUNT).collect();
+        self.exchange.gather(&mut numbers, &ends);
+        for (worst, numbers) in all.iter_mut().zip(numbers.chunks_exact(Worst::COUNT)) {
+            worst.read(numbers);
+        }
+        all.into_iter().fold(Worst::NONE, Worst::and)
+    }
+
+    /// Whether a rank says yes.
+    fn any(&self, yes: bool) -> bool {
+        let (rank, ranks) = (self.exchange.rank(), self.exchange.ranks());
+        let mut all = vec![0.0; ranks];
+        all[rank] = f64::from(u8::from(yes));
+        self.exchange.gather(&mut all, &(0..=ranks).collect::<Vec<_>>());
+        all.iter().any(|yes| *yes != 0.0)
+    }
+}
+
+/// A fixed count of numbers, to be sent.
+pub(super) trait Numbers {
+    const COUNT: usize;
+    fn write(&self, to: &mut [f64]);
+    fn read(&mut self, from: &[f64]);
+}
+
+impl Numbers for f64 {
+    const COUNT: usize = 1;
+    fn write(&self, to: &mut [f64]) {
+        to[0] = *self;
+    }
+    fn read(&mut self, from: &[f64]) {
+        *self = from[0];
+    }
+}
+
+impl Numbers for F8 {
+    const COUNT: usize = LANES;
+    fn write(&self, to: &mut [f64]) {
+        to.copy_from_slice(&self.0);
+    }
+    fn read(&mut self, from: &[f64]) {
+        self.0.copy_from_slice(from);
+    }
+}
+
+/// A type that consists of fields of eight lanes, in this order.
+macro_rules! of_lanes {
+    ($type:ty, $count:literal, $value:ident => $fields:expr) => {
+        impl Numbers for $type {
+            const COUNT: usize = $count * LANES;
+            fn write(&self, to: &mut [f64]) {
+                let mut copy = *self;
+                let $value = &mut copy;
+                $fields.into_iter().zip(to.chunks_exact_mut(LANES)).for_each(|(from, to)| from.write(to));
+            }
+            fn read(&mut self, from: &[f64]) {
+                let $value = self;
+                $fields.into_iter().zip(from.chunks_exact(LANES)).for_each(|(to, from)| to.read(from));
+            }
+        }
+    };
+}
+
+of_lanes!(ExternalWork, 4, of => [&mut of.boundary, &mut of.source].into_iter().chain(&mut of.impulse));
+of_lanes!(FaceForces, 12, of => of.impulse.iter_mut().flatten().chain(&mut of.work));
+of_lanes!(Torques, 4, of => of);
+of_lanes!(BlockBalance, 4, of => [&mut of.flux, &mut of.boundary, &mut of.corrected, &mut of.energy]);
+of_lanes!(Speeds, 2, of => [&mut of.fastest, &mut of.prestress]);
+
+impl Numbers for Worst {
+    /// The lanes of the fastest and of the least J, the lost block, and the face point: its block (none: below 0), lane, face, point, J.
+    const COUNT: usize = 2 * LANES + 6;
+    fn write(&self, to: &mut [f64]) {
+        let face = self.face.map_or([-1.0; 5], |face| {
+            [face.block as f64, face.lane as f64, face.at[0] as f64, face.at[1] as f64, face.j]
+        });
+        let lost = if self.lost == usize::MAX { -1.0 } else { self.lost as f64 };
+        let numbers = self.fastest.0.into_iter().chain(self.min_j.0).chain([lost]).chain(face);
+        to.iter_mut().zip(numbers).for_each(|(to, from)| *to = from);
+    }
+    fn read(&mut self, from: &[f64]) {
+        let (lanes, rest) = from.split_at(2 * LANES);
+        self.fastest.read(&lanes[..LANES]);
+        self.min_j.read(&lanes[LANES..]);
+        self.lost = if rest[0] < 0.0 { usize::MAX } else { rest[0] as usize };
+        let [block, lane, face, point] = [1, 2, 3, 4].map(|k| rest[k] as usize);
+        self.face = (rest[1] >= 0.0).then_some(FacePoint { block, lane, at: [face, point], j: rest[5] });
+    }
+}
+
+impl Work {
+    /// Whether several ranks step the body.
+    pub(crate) fn is_shared(&self) -> bool {
+        self.tiles.ranks.is_some()
+    }
+
+    /// Gives all ranks what each of them has metered in a step; all of the new state where the scheme looks at it in each step.
+    pub(super) fn share(&mut self, scheme: &Scheme) {
+        let Work { tiles: Tiles { ranks, .. }, outside, balance, .. } = self;
+        let Some(ranks) = ranks else { return };
+        ranks.whole = false;
+        let entry = |block: usize| outside.first[block] as usize;
+        ranks.gather(&mut outside.entries, entry);
+        if let Some(forces) = &mut outside.forces {
+            ranks.gather(forces, entry);
+        }
+        if let Some(torques) = &mut outside.torques {
+            ranks.gather(torques, entry);
+        }
+        if let Some(balance) = balance {
+            ranks.gather(balance, |block| block);
+        }
+        if scheme.looks_at_all() {
+            self.fetch(scheme);
+        }
+    }
+
+    /// The state that is at hand is the one before a step again, of which this rank may know its own blocks only.
+    pub(super) fn forget_others(&mut self) {
+        if let Some(ranks) = &mut self.tiles.ranks {
+            ranks.whole = false;
+        }
+    }
+
+    /// Fetches the blocks of other ranks of the new state.
+    pub(super) fn fetch(&mut self, scheme: &Scheme) {
+        let Work { tiles: Tiles { ranks, .. }, next, speed, corrections, scratch, .. } = self;
+        let Some(ranks) = ranks.as_deref_mut().filter(|ranks| !ranks.whole) else { return };
+        ranks.state(scheme, next, speed);
+        let Some(memory) = corrections.as_deref_mut() else { return };
+        let own = ranks.blocks[ranks.exchange.rank()]..ranks.blocks[ranks.exchange.rank() + 1];
+        let foreign = |block: &usize| !own.contains(block);
+        for block in (0..scheme.operators.blocks.len()).filter(foreign) {
+            memory.worst[block] = scheme.worst_of_block(next, block, scratch, &mut speed[block]);
+        }
+    }
+}
+
+impl Ranks {
+    /// Fetches the blocks of other ranks of a state and its speeds.
+    fn state(&mut self, scheme: &Scheme, state: &mut State, speed: &mut [Speeds]) {
+        let stride = state.components * scheme.operators.nodes();
+        self.gather(&mut state.u, |block| block * stride);
+        if !state.internal.is_empty() {
+            let blocks = scheme.operators.blocks.len();
+            let end = scheme.histories.len();
+            self.gather(
+                &mut state.internal,
+                |block| if block < blocks { scheme.histories.range(block).start } else { end },
+            );
+        }
+        if !state.boundary.is_empty() {
+            let (blocks, end) = (scheme.operators.blocks.len(), scheme.boundary_memory.len());
+            let first = |block: usize| if block < blocks { scheme.boundary_memory.range(block).start } else { end };
+            self.gather(&mut state.boundary, first);
+        }
+        self.gather(speed, |block| block);
+        self.whole = true;
+    }
+}
+
+impl Scheme {
+    /// Whether something of each step looks at the whole body.
+    fn looks_at_all(&self) -> bool {
+        !self.corrections.is_empty() || self.rescue.is_some() || self.contacts.is_some() || self.bodies.is_some()
+    }
+}
+
+impl Motion {
+    /// Whether several ranks step the body.
+    pub fn is_shared(&self) -> bool {
+        self.work.is_shared()
+    }
+
+    /// Fetches what other ranks know of the state. All ranks call it at the same step.
+    pub fn make_whole(&mut self, scheme: &Scheme) {
+        let Self { state, survey, work, .. } = self;
+        if let Some(ranks) = work.tiles.ranks.as_deref_mut().filter(|ranks| !ranks.whole) {
+            ranks.state(scheme, state, &mut survey.speed);
+        }
+    }
+
+    /// Whether any rank says yes; without other ranks what is said.
+    pub fn any(&self, yes: bool) -> bool {
+        self.work.tiles.ranks.as_ref().map_or(yes, |ranks| ranks.any(yes))
+    }
+}

@@ -1,0 +1,149 @@
+//! Several ranks that step a body together write the files of one alone, to the byte. Here ranks are threads of one program.
+
+use crate::bodies::Parts;
+use crate::common::{Bench, assert_same};
+use dgmpm::Exchange;
+use dgmpm::parts::problem::{Problem, Setup};
+use dgmpm::parts::run::Folder;
+use dgmpm::parts::scene::Scene;
+use std::path::Path;
+use std::sync::{Arc, Condvar, Mutex};
+use std::time::Duration;
+
+/// Where ranks lay down what they send: by rank from and to.
+#[derive(Debug, Default)]
+struct Table {
+    letters: Vec<Vec<Vec<f64>>>,
+    /// How many have come to the meeting under way, and how many meetings there were.
+    here: usize,
+    meetings: usize,
+}
+
+#[derive(Debug)]
+struct Hall {
+    table: Mutex<Table>,
+    met: Condvar,
+}
+
+impl Hall {
+    /// Waits for all ranks. A rank that does not come in a minute has failed: the others say so and do not wait for ever.
+    fn meet(&self, ranks: usize) {
+        let mut table = self.table.lock().unwrap();
+        table.here += 1;
+        let meeting = table.meetings;
+        if table.here == ranks {
+            (table.here, table.meetings) = (0, meeting + 1);
+            return self.met.notify_all();
+        }
+        while table.meetings == meeting {
+            let (next, late) = self.met.wait_timeout(table, Duration::from_secs(60)).unwrap();
+            assert!(!late.timed_out(), "a rank does not come");
+            table = next;
+        }
+    }
+}
+
+#[derive(Debug)]
+struct Thread {
+    rank: usize,
+    ranks: usize,
+    hall: Arc<Hall>,
+}
+
+impl Exchange for Thread {
+    fn rank(&self) -> usize {
+        self.rank
+    }
+    fn ranks(&self) -> usize {
+        self.ranks
+    }
+    fn swap(&self, send: &[Vec<f64>], receive: &mut [Vec<f64>]) {
+        self.hall.table.lock().unwrap().letters[self.rank] = send.to_vec();
+        self.hall.meet(self.ranks);
+        for (from, receive) in receive.iter_mut().enumerate() {
+            let sent = &self.hall.table.lock().unwrap().letters[from][self.rank];
+            assert_eq!(sent.len(), receive.len(), "from {from} to {}", self.rank);
+            receive.copy_from_slice(sent);
+        }
+        self.hall.meet(self.ranks);
+    }
+    fn gather(&self, all: &mut [f64], first: &[usize]) {
+        self.hall.table.lock().unwrap().letters[self.rank] = vec![all[first[self.rank]..first[self.rank + 1]].to_vec()];
+        self.hall.meet(self.ranks);
+        for from in 0..self.ranks {
+            all[first[from]..first[from + 1]].copy_from_slice(&self.hall.table.lock().unwrap().letters[from][0]);
+        }
+        self.hall.meet(self.ranks);
+    }
+}
+
+/// Runs a scene alone and on so many ranks, all of which have the files of the first run.
+fn compare(name: &str, scene: &Path, sets: &[&str], ranks: usize) {
+    let out = tempfile::tempdir().unwrap();
+    let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+    let scene = Scene::load(scene, &sets).unwrap();
+    let folder = |name: &str| Folder::new(&out.path().join(name));
+    let alone = folder("alone");
+    Problem::new(&scene).unwrap().run_in(&alone).unwrap_or_else(|why| panic!("{name}: {why}"));
+    let table = Table { letters: vec![vec![vec![]; ranks]; ranks], ..Table::default() };
+    let hall = Arc::new(Hall { table: Mutex::new(table), met: Condvar::new() });
+    std::thread::scope(|scope| {
+        for rank in 0..ranks {
+            let exchange = Arc::new(Thread { rank, ranks, hall: hall.clone() });
+            let (scene, folder) = (&scene, folder(&rank.to_string()));
+            scope.spawn(move || {
+                let mut problem = Setup::of(scene).exchange(exchange).build().unwrap();
+                problem.run_in(&folder).unwrap_or_else(|why| panic!("{name}, rank {rank}: {why}"));
+            });
+        }
+    });
+    for rank in 0..ranks {
+        assert_same(&format!("{name}, {ranks} ranks"), &alone.root, &out.path().join(rank.to_string()));
+    }
+}
+
+const QUIET: &str = "checkpoint={every_minutes=60}";
+/// Nine blocks.
+const CELLS: &str = "mesh.rectangle.cells=[12,6]";
+const ELASTIC: &str = "material=[{law=\"neo-hookean\",young=2e11,poisson=0.3,density=7800}]";
+
+#[test]
+fn any_number_of_ranks_has_the_bits_of_one() {
+    let bench = Bench::new();
+    let case = bench.path("case.toml");
+    for ranks in [2, 3] {
+        compare("J2, regrid", &case, &[QUIET, CELLS], ranks);
+    }
+    let jitter = "cloud={layout=\"jitter\",seed=1,amount=0.2}";
+    compare("jitter", &case, &[QUIET, CELLS, ELASTIC, jitter, "regrid=[]"], 4);
+    let fem = "scheme.method=rk-dgfem";
+    compare("Runge-Kutta", &case, &[QUIET, CELLS, ELASTIC, fem, "scheme.degree=3", "regrid=[]"], 3);
+    compare(
+        "ADER-DGFEM",
+        &case,
+        &[QUIET, CELLS, ELASTIC, "scheme.method=ader-dgfem", "scheme.degree=1", "regrid=[]"],
+        2,
+    );
+}
+
+#[test]
+fn ranks_have_the_bits_of_one_where_a_step_looks_at_the_whole_body() {
+    let bench = Bench::new();
+    let case = bench.path("case.toml");
+    let (fem, fast) = ("scheme.method=rk-dgfem", "initial.velocity=[\"-1500\",\"0\"]");
+    let limiter = "limiter={kind=\"moment\"}";
+    compare("limiter", &case, &[QUIET, CELLS, ELASTIC, fem, limiter, fast, "regrid=[]"], 2);
+    let mut parts = Parts::default();
+    let sides = |sides: [&str; 4]| sides.map(str::to_owned);
+    parts.rectangle([0.0; 2], [1.0, 0.5], [6, 3], "body", &sides(["out", "a", "out", "out"]));
+    parts.rectangle([1.005, 0.1], [0.5, 0.5], [3, 3], "body", &sides(["b", "out", "out", "out"]));
+    let conditions = [("out", "kind=\"free\""), ("a", "kind=\"contact\",partner=\"b\",friction=0.3")];
+    bench.of_parts(&parts, &conditions, "\"100*step(1.001 - x)\", \"-30*step(x - 1.001)\"");
+    compare("contact", &bench.path("parts.toml"), &["scheme.angular_momentum=true"], 2);
+}
+
+#[test]
+fn a_rank_without_a_block_follows() {
+    let bench = Bench::new();
+    compare("two cells", &bench.path("case.toml"), &[QUIET, "mesh.rectangle.cells=[2,1]", ELASTIC, "regrid=[]"], 3);
+}
