@@ -68,9 +68,9 @@ fn scheme(method: Method, degree: usize) -> Result<Scheme, Box<dyn std::error::E
     let needs = Needs { degree, sampling, curl_free: degree > 0 };
     let operators = Operators::build(&mesh, &links(&mesh)?, &vec![0; mesh.cells.len()], &needs)?;
     let alpha = if degree >= 4 { 6.0 } else { 3.0 };
-    let laws = vec![Law::new(NeoHookean::new(1.0, 0.3, 1.0))];
+    let laws = vec![Law::from(NeoHookean::new(1.0, 0.3, 1.0))];
     let boundaries = (0..4).map(|_| Arc::new(Wall { speed: None }) as Arc<dyn Boundary>).collect();
-    let scheme = Scheme::new(operators, laws, method, Flux::new(Rusanov), boundaries)?;
+    let scheme = Scheme::new(operators, laws, method, Flux::from(Rusanov), boundaries)?;
     match degree {
         0 => Ok(scheme),
         _ => Ok(scheme.with_curl(Control { relax: Relax::Gradient, rate: alpha * degree as f64 })?),

@@ -21,8 +21,8 @@ fn main() -> Result<()> {
     let wall = || Arc::new(Wall { speed: None }) as Arc<dyn Boundary>;
     let boundaries = vec![wall(), Arc::new(Free), wall(), Arc::new(Free)];
     let steel = NeoHookean::new(2e11, 0.3, 7800.0);
-    let (method, laws) = (Method::ader(DEGREE, DEGREE), vec![Law::new(steel)]);
-    let scheme = Scheme::new(operators, laws, method, Flux::new(Dual), boundaries)?
+    let (method, laws) = (Method::ader(DEGREE, DEGREE), vec![Law::from(steel)]);
+    let scheme = Scheme::new(operators, laws, method, Flux::from(Dual), boundaries)?
         .with_curl(Control { relax: Relax::Rotation, rate: 3.0 * DEGREE as f64 })?;
 
     // F = 1 and p = rho0 v at every node: [cell][component][node] with F11, F12, F21, F22, p1, p2, u1, u2.

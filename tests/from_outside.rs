@@ -388,7 +388,7 @@ fn a_correction_from_outside_acts_after_each_step() {
 #[test]
 fn a_name_that_is_taken_is_refused() {
     register();
-    let law = |_: &dgmpm::registry::Values| Law::new(dgmpm::NeoHookean::new(1.0, 0.3, 1.0));
+    let law = |_: &dgmpm::registry::Values| Law::from(dgmpm::NeoHookean::new(1.0, 0.3, 1.0));
     for name in ["j2", "maxwell"] {
         let why = LAWS.add(Entry { name, about: "", parameters: &[], check: ANY, build: law }).unwrap_err();
         assert!(why.to_string().contains(name), "{why}");

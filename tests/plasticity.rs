@@ -360,7 +360,7 @@ fn energy_goes_into_plastic_flow_and_jumps_and_nowhere_else() {
         assert!(plastic.windows(2).all(|pair| pair[1] >= pair[0]) && plastic[0] == 0.0);
         let end = *plastic.last().unwrap();
         // The exact solution: sigma_y p behind the plastic shock, over .05 m x 4689 m/s x 3e-4 s.
-        let exact = J2Impact::new(&Law::new(J2::new(2e11, 0.3, 7800.0, 4e8, 1e10)), 200.0).unwrap();
+        let exact = J2Impact::new(&Law::from(J2::new(2e11, 0.3, 7800.0, 4e8, 1e10)), 200.0).unwrap();
         let expected = 4e8 * exact.internal([0.0; 2], 3e-4).unwrap()[4] * 0.05 * exact.shocks()[1].1 * 3e-4;
         println!("{method}: plastic {end:.5e}, exact {expected:.5e}");
         // The wall cell and the smeared front: of 28 cells behind the front one counts 4 %.

@@ -24,6 +24,23 @@ const WITH_MEMORY: &str = "makes energy where a law with internal variables flow
 
 const OTHER: &str = "scheme.flux = \"rusanov\" damps all jumps of F, and holds some corners that are crushed";
 
+/// A flux of this crate as a [`step::Flux`]; compiled here, once, where [`step::Flux::new`] compiles its kernels in the crate that calls
+/// it.
+macro_rules! flux_from {
+    ($flux:ty) => {
+        impl From<$flux> for step::Flux {
+            #[inline(never)]
+            fn from(flux: $flux) -> step::Flux {
+                step::Flux::new(flux)
+            }
+        }
+    };
+}
+flux_from!(Dual);
+flux_from!(Rusanov);
+flux_from!(Acoustic);
+flux_from!(AcousticCurl);
+
 /// Every flux.
 pub static FLUXES: Table<Flux> = Table::new(&[
     Entry {
@@ -31,7 +48,7 @@ pub static FLUXES: Table<Flux> = Table::new(&[
         about: "Lax-Friedrichs in velocity and traction, with the jump of the rotation of F, which does no work",
         parameters: &[],
         check: ANY,
-        build: Flux { make: || step::Flux::new(Dual), when_lost: |memory| (!memory).then_some(OTHER) },
+        build: Flux { make: || step::Flux::from(Dual), when_lost: |memory| (!memory).then_some(OTHER) },
     },
     Entry {
         name: "rusanov",
@@ -39,7 +56,7 @@ pub static FLUXES: Table<Flux> = Table::new(&[
         parameters: &[],
         check: ANY,
         build: Flux {
-            make: || step::Flux::new(Rusanov),
+            make: || step::Flux::from(Rusanov),
             when_lost: |memory| match memory {
                 true => Some(WITH_MEMORY),
                 false => Some("makes energy in large motions of a nearly incompressible body"),
@@ -51,14 +68,14 @@ pub static FLUXES: Table<Flux> = Table::new(&[
         about: "linearised Godunov; unstable in compression where the curl of F is not controlled",
         parameters: &[],
         check: ANY,
-        build: Flux { make: || step::Flux::new(Acoustic), when_lost },
+        build: Flux { make: || step::Flux::from(Acoustic), when_lost },
     },
     Entry {
         name: "acoustic-curl",
         about: "acoustic with a penalty on the tangential jump of F",
         parameters: &[],
         check: ANY,
-        build: Flux { make: || step::Flux::new(AcousticCurl), when_lost },
+        build: Flux { make: || step::Flux::from(AcousticCurl), when_lost },
     },
 ]);
 

@@ -17,6 +17,24 @@ const POISSON: Parameter = Parameter::required(
     Form::Number(Check { range: "greater than -1 and less than 0.5", holds: |nu| nu > -1.0 && nu < 0.5 }),
 );
 
+/// A law of this crate as a [`Law`]. [`Law::new`] compiles the kernels for its law in the crate that calls it, which takes half a
+/// minute; these are compiled here, once.
+macro_rules! law_from {
+    ($law:ty) => {
+        impl From<$law> for Law {
+            #[inline(never)]
+            fn from(law: $law) -> Law {
+                Law::new(law)
+            }
+        }
+    };
+}
+law_from!(NeoHookean);
+law_from!(LinearElastic);
+law_from!(StVenantKirchhoff);
+#[cfg(feature = "effect-memory")]
+law_from!(J2);
+
 /// Every law.
 pub static LAWS: Table<Build> = Table::new(&[
     Entry {
@@ -24,21 +42,21 @@ pub static LAWS: Table<Build> = Table::new(&[
         about: "compressible neo-Hookean, finite strain, in plane strain",
         parameters: &[YOUNG, POISSON, DENSITY],
         check: ANY,
-        build: |of| Law::new(NeoHookean::new(of.number("young"), of.number("poisson"), of.number("density"))),
+        build: |of| Law::from(NeoHookean::new(of.number("young"), of.number("poisson"), of.number("density"))),
     },
     Entry {
         name: "linear-elastic",
         about: "linear elastic, small strain",
         parameters: &[YOUNG, POISSON, DENSITY],
         check: ANY,
-        build: |of| Law::new(LinearElastic::new(of.number("young"), of.number("poisson"), of.number("density"))),
+        build: |of| Law::from(LinearElastic::new(of.number("young"), of.number("poisson"), of.number("density"))),
     },
     Entry {
         name: "st-venant-kirchhoff",
         about: "St. Venant-Kirchhoff, Hooke's law in Green's strain; stiffens in tension, loses hyperbolicity in compression",
         parameters: &[YOUNG, POISSON, DENSITY],
         check: ANY,
-        build: |of| Law::new(StVenantKirchhoff::new(of.number("young"), of.number("poisson"), of.number("density"))),
+        build: |of| Law::from(StVenantKirchhoff::new(of.number("young"), of.number("poisson"), of.number("density"))),
     },
     #[cfg(feature = "effect-memory")]
     Entry {
@@ -59,7 +77,7 @@ pub static LAWS: Table<Build> = Table::new(&[
         check: ANY,
         build: |of| {
             let [young, poisson, density] = ["young", "poisson", "density"].map(|name| of.number(name));
-            Law::new(J2::new(young, poisson, density, of.number("yield_stress"), of.number("hardening")))
+            Law::from(J2::new(young, poisson, density, of.number("yield_stress"), of.number("hardening")))
         },
     },
 ]);

@@ -43,15 +43,15 @@ const TURN: f64 = 0.5;
 const COMPRESSED: f64 = 2.3;
 const STEEPNESS: f64 = 2.0;
 
-/// The star state of two sides, as jumps.
-struct Star<L> {
-    /// v* - mean v.
-    v: [L; 2],
-    /// t*.
+/// Twice the star state of two sides: halves of sums and means are left to the last factor, and a factor of 2 rounds nothing.
+struct Twice<L> {
+    /// theta/z_p, the factor of `[t]` in 2 (v* - mean v).
+    admittance: L,
+    /// 2 t*.
     t: [L; 2],
     /// v^+ - v^-.
     jump: [L; 2],
-    /// What is added to the rows of F.
+    /// Twice what is added to the rows of F.
     add: [L; 4],
 }
 
@@ -60,7 +60,11 @@ impl Dual {
     #[inline(always)]
     pub fn incompatible<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], c: L, medium: &Medium<L>) -> [L; 4] {
         let f = Self::sum(minus, plus);
-        Self::jumps(minus, plus, f, n, c, L::splat(1.0) / tensor::contract(f, f), medium)
+        let mut add = Self::jumps(minus, plus, f, n, c, L::splat(1.0) / tensor::contract(f, f), medium);
+        for add in &mut add {
+            *add = L::splat(0.5) * *add;
+        }
+        add
     }
 
     /// Twice the mean F.
@@ -70,7 +74,7 @@ impl Dual {
         [m[0] + p[0], m[1] + p[1], m[2] + p[2], m[3] + p[3]]
     }
 
-    /// -c_p/4 r e - c_d/2 D from `f` = 2 F and `inverse` = 1/|2 F|^2: a common factor falls out of r e and q (g : `[F]`) g.
+    /// 2 (-c_p/4 r e - c_d/2 D) from `f` = 2 F and `inverse` = 1/|2 F|^2: a common factor falls out of r e and q (g : `[F]`) g.
     #[inline(always)]
     fn jumps<L: Lane>(
         minus: &Trace<L>,
@@ -86,9 +90,9 @@ impl Dual {
         let (e, g) = ([-f[2], -f[3], f[0], f[1]], tensor::cofactor(f));
         // Four times (mean t).(F N).
         let pushed = tensor::dot([minus.t[0] + plus.t[0], minus.t[1] + plus.t[1]], tensor::times(f, n));
-        let prestress = pushed * (L::splat(0.25 * DEVIATOR) * medium.shear_admittance);
-        let deviator = prestress.min(L::splat(-TURN) * medium.turn);
-        let turn = (inverse * tensor::contract(e, j)) * (L::splat(-ROTATION) * c - deviator);
+        let prestress = pushed * (L::splat(0.5 * DEVIATOR) * medium.shear_admittance);
+        let deviator = prestress.min(L::splat(-2.0 * TURN) * medium.turn);
+        let turn = (inverse * tensor::contract(e, j)) * L::splat(-2.0 * ROTATION).mul_add(c, -deviator);
         let trace = -(inverse * tensor::contract(g, j)) * deviator;
         let mut out = [L::zero(); 4];
         for k in 0..4 {
@@ -105,22 +109,17 @@ impl Dual {
     }
 
     #[inline(always)]
-    fn star<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> Star<L> {
-        let half = L::splat(0.5);
+    fn twice<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> Twice<L> {
         let c = minus.c[0].max(plus.c[0]);
         let (z, f) = (medium.density * c, Self::sum(minus, plus));
         // One division for 1/z and 1/|2 F|^2.
         let square = tensor::contract(f, f);
         let inverse = L::splat(1.0) / (z * square);
         let add = Self::jumps(minus, plus, f, n, c, inverse * z, medium);
-        let (with_t, with_v) = (half * Self::share(f, medium) * (inverse * square), half * z);
+        let admittance = Self::share(f, medium) * (inverse * square);
         let jump = [plus.v[0] - minus.v[0], plus.v[1] - minus.v[1]];
-        let v = [with_t * (plus.t[0] - minus.t[0]), with_t * (plus.t[1] - minus.t[1])];
-        let t = [
-            with_v.mul_add(jump[0], half * (minus.t[0] + plus.t[0])),
-            with_v.mul_add(jump[1], half * (minus.t[1] + plus.t[1])),
-        ];
-        Star { v, t, jump, add }
+        let t = [z.mul_add(jump[0], minus.t[0] + plus.t[0]), z.mul_add(jump[1], minus.t[1] + plus.t[1])];
+        Twice { admittance, t, jump, add }
     }
 }
 
@@ -129,14 +128,14 @@ impl Riemann for Dual {
 
     #[inline(always)]
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6] {
-        let star = Self::star(minus, plus, n, medium);
+        let (twice, half) = (Self::twice(minus, plus, n, medium), L::splat(0.5));
         let mut flux = [L::zero(); 6];
         for i in 0..2 {
             // Not from v^- on: the sides must agree to the bit.
-            let v = L::splat(0.5).mul_add(minus.v[i] + plus.v[i], star.v[i]);
-            flux[2 * i] = star.add[2 * i] - v * n[0];
-            flux[2 * i + 1] = star.add[2 * i + 1] - v * n[1];
-            flux[4 + i] = -star.t[i];
+            let v = twice.admittance.mul_add(plus.t[i] - minus.t[i], minus.v[i] + plus.v[i]);
+            flux[2 * i] = half * v.mul_add(-n[0], twice.add[2 * i]);
+            flux[2 * i + 1] = half * v.mul_add(-n[1], twice.add[2 * i + 1]);
+            flux[4 + i] = -(half * twice.t[i]);
         }
         flux
     }
@@ -144,13 +143,13 @@ impl Riemann for Dual {
     /// In jumps alone.
     #[inline(always)]
     fn lifted<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>, scale: L) -> [L; 6] {
-        let star = Self::star(minus, plus, n, medium);
+        let (twice, half) = (Self::twice(minus, plus, n, medium), L::splat(0.5) * scale);
         let mut out = [L::zero(); 6];
         for i in 0..2 {
-            let v = L::splat(0.5).mul_add(star.jump[i], star.v[i]);
-            out[2 * i] = scale * (star.add[2 * i] - v * n[0]);
-            out[2 * i + 1] = scale * (star.add[2 * i + 1] - v * n[1]);
-            out[4 + i] = -(scale * star.t[i]);
+            let v = twice.admittance.mul_add(plus.t[i] - minus.t[i], twice.jump[i]);
+            out[2 * i] = half * v.mul_add(-n[0], twice.add[2 * i]);
+            out[2 * i + 1] = half * v.mul_add(-n[1], twice.add[2 * i + 1]);
+            out[4 + i] = -half * twice.t[i];
         }
         out
     }

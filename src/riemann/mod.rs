@@ -109,10 +109,10 @@ pub trait Riemann: Copy + std::fmt::Debug + Send + Sync + 'static {
 /// The jump of v alone is held by a force that its rate makes, so that under a load that stays cells part for good. This
 /// force is that of a spring: with K/2 `[u]`^2 in the energy of the face its power cancels, for every law, since du/dt = v; the
 /// energy law of a flux stands as it was. Source: the symmetric interior penalty method (Arnold, SIAM J. Numer. Anal. 19, 1982).
-/// Which traces of u are meant: [`crate::operators::Line::held`].
+/// Which traces of u are meant: [`crate::operators::Line::held`]. The `moduli` rho0 c_p^2 are those of both sides over `unit`, Pa.
 #[inline(always)]
-pub fn hold<L: Lane>(gap: [L; 2], moduli: [L; 2]) -> [L; 2] {
-    let stiffness = L::splat(-HOLD) * (moduli[0] * moduli[1]) / (moduli[0] + moduli[1]);
+pub fn hold<L: Lane>(gap: [L; 2], moduli: [L; 2], unit: f64) -> [L; 2] {
+    let stiffness = L::splat(-HOLD * unit) * (moduli[0] * moduli[1]) / (moduli[0] + moduli[1]);
     [stiffness * gap[0], stiffness * gap[1]]
 }
 

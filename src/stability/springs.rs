@@ -166,7 +166,7 @@ impl<'a> Faces<'a> {
         for point in 0..operators.line.m {
             let opposite = Self::opposite(&across, point, operators.line.m);
             let moduli = [self.modulus(cell, face, point, normal), self.modulus(there, other, opposite, normal)];
-            let [stiffness, _] = hold([-1.0, 0.0], moduli);
+            let [stiffness, _] = hold([-1.0, 0.0], moduli, 1.0);
             let factor = (operators.line.basis.weights[point] * stiffness).sqrt() * self.problem.h;
             own.push(self.at_nodes(&operators.line.held, face, point, factor));
             beyond.push(self.at_nodes(&operators.line.held, other, opposite, factor));

@@ -69,11 +69,16 @@ fn turn<L: Lanes, O: Other, const W: usize>(own: &[[F8; W]], other: &O, span: f6
     square.sqrt() * L::splat(0.5 / span)
 }
 
-/// What is lifted of the held jump of displacement, [`hold`], from the numbers of both sides and their densities.
+/// What is lifted of the held jump of displacement, [`hold`], from the numbers of both sides of one law.
 #[inline(always)]
-fn held<L: Lane>(own: &[L], there: &[L], density: [f64; 2]) -> [L; 2] {
-    let moduli = [L::splat(density[0]) * (own[8] * own[8]), L::splat(density[1]) * (there[8] * there[8])];
-    hold([there[9] - own[9], there[10] - own[10]], moduli)
+fn held<L: Lane>(own: &[L], there: &[L], density: f64) -> [L; 2] {
+    hold(gap(own, there), [own[8] * own[8], there[8] * there[8]], density)
+}
+
+/// The jump of displacement, from the numbers of both sides.
+#[inline(always)]
+fn gap<L: Lane>(own: &[L], there: &[L]) -> [L; 2] {
+    [there[9] - own[9], there[10] - own[10]]
 }
 
 /// The four faces of a block, all lanes as faces between cells of one law.
@@ -131,7 +136,7 @@ impl Faces<'_> {
             let there = turned::<L, R, W>(other.load::<L, W>(point));
             let plus = trace_of::<L, R, W>(&there);
             if R::LOOKS == Looks::Displacement {
-                let held = held(&load_array::<L, W>(&own[point]), &there, [self.medium.density; 2]);
+                let held = held(&load_array::<L, W>(&own[point]), &there, self.medium.density);
                 store_array(held, &mut self.held.as_chunks_mut::<2>().0[m * face + point]);
             }
             store_array(riemann.lifted(&minus, &plus, normal, &medium, length), &mut lift[point]);
@@ -372,7 +377,12 @@ impl Block<'_> {
             (Looks::Displacement, Neighbour::Interface(_, material)) => {
                 let there: [f64; 11] = std::array::from_fn(|k| other.number(point, k, own.len(), lane));
                 let here: [f64; 11] = std::array::from_fn(|k| own[k].0[lane]);
-                held(&here, &there, [self.law().density(), self.scheme.laws[*material].density()])
+                let densities = [self.law().density(), self.scheme.laws[*material].density()];
+                hold(
+                    gap(&here, &there),
+                    [densities[0] * (here[8] * here[8]), densities[1] * (there[8] * there[8])],
+                    1.0,
+                )
             }
             _ => [0.0; 2],
         }

@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub struct Flux(Arc<dyn BlockFlux>);
 
 impl Flux {
-    /// From its type.
+    /// From its type. A flux of this crate is compiled already: `Flux::from(Dual)`.
     pub fn new<R: Riemann>(flux: R) -> Self {
         Self(Arc::new(flux))
     }

@@ -18,7 +18,7 @@ use std::sync::Arc;
 pub struct Law(Arc<dyn BlockLaw>);
 
 impl Law {
-    /// From its type.
+    /// From its type. A law of this crate is compiled already: `Law::from(NeoHookean::new(..))`.
     pub fn new<M: Material>(law: M) -> Self {
         const { assert!(crate::material::is_declared_whole::<M>(), "HISTORY has other numbers than History") };
         Self(Arc::new(law))

@@ -96,7 +96,7 @@ fn trapezoids_have_the_errors_of_the_designs_prototype() {
 
 #[test]
 fn for_a_linear_law_dgmpm_on_any_cloud_is_dgfem() {
-    let law = Law::new(LinearElastic::new(1.0, 0.3, 1.0));
+    let law = Law::from(LinearElastic::new(1.0, 0.3, 1.0));
     let problem = Problem { law, ..manufactured(1.0, 3.0) };
     let mesh = Grid::Squares.mesh(6);
     for degree in 1..=3 {

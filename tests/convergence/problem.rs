@@ -27,14 +27,14 @@ fn unit_law() -> NeoHookean {
 
 /// Strain of 5 % about F = 1, period 1.
 pub fn manufactured(end: f64, alpha: f64) -> Problem {
-    let law = Law::new(unit_law());
+    let law = Law::from(unit_law());
     let exact = Arc::new(Manufactured::new(law.clone(), 0.05, 1.0));
     Problem { law, exact, periodic: vec![[0, 1], [2, 3]], end, safety: 0.85, alpha: Some(alpha) }
 }
 
 /// Waves of strain `amplitude` about the uniform state F = `stretch` times the unit tensor, period 1.
 pub fn prestrained(stretch: f64, amplitude: f64, end: f64, alpha: Option<f64>) -> Problem {
-    let law = Law::new(unit_law());
+    let law = Law::from(unit_law());
     let exact = Arc::new(Prestrained { law: unit_law(), stretch, amplitude });
     Problem { law, exact, periodic: vec![[0, 1], [2, 3]], end, safety: 0.85, alpha }
 }

@@ -96,7 +96,7 @@ fn sampled(problem: &Problem, mesh: &Mesh, sampling: Option<Sampling>, degree: u
     let mut boundaries: Vec<_> = (0..mesh.edge_groups.len()).map(wall).collect();
     boundaries[1] = Arc::new(Free);
     let laws = vec![problem.law.clone()];
-    let scheme = Scheme::new(operators, laws, method, Flux::new(Rusanov), boundaries).unwrap().with_sources(sources);
+    let scheme = Scheme::new(operators, laws, method, Flux::from(Rusanov), boundaries).unwrap().with_sources(sources);
     match problem.alpha {
         Some(alpha) => scheme.with_curl(Control { relax: Relax::Gradient, rate: alpha * degree as f64 }).unwrap(),
         None => scheme,

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 fn steel(end: f64, exact: impl FnOnce(&Law) -> Arc<dyn Exact>) -> Problem {
-    let law = Law::new(NeoHookean::new(2e11, 0.3, 7800.0));
+    let law = Law::from(NeoHookean::new(2e11, 0.3, 7800.0));
     Problem { exact: exact(&law), law, periodic: vec![], end, safety: 0.9, alpha: Some(3.0) }
 }
 
