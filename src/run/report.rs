@@ -1,7 +1,7 @@
 //! What a run cost and what became of energy and momentum: the table at its end and `summary.json`.
 
-use super::watch::{Alarm, Limits, Watch};
-use super::{Kept, Treated};
+use super::watch::{Alarm, Watch};
+use super::{Kept, Settings, Treated};
 use crate::state::{State, UNKNOWNS};
 use crate::step::phase::{NAMES, Phases};
 use crate::step::{Balance, DeepestOverlap, Held, Motion, Scheme, Survey, Totals};
@@ -14,6 +14,8 @@ use std::time::Instant;
 pub struct Report {
     /// Steps done.
     pub steps: usize,
+    /// The ends that the run had, s, each with the step from which on it had it: a run that is extended by `resume` has several.
+    pub ends: Vec<(usize, f64)>,
     /// Smallest and largest step, s.
     pub dt: [f64; 2],
     /// Seconds per phase, summed over threads.
@@ -57,6 +59,7 @@ impl Default for Report {
     fn default() -> Self {
         Self {
             steps: 0,
+            ends: vec![],
             dt: [f64::INFINITY, 0.0],
             phases: Phases::default(),
             observed: vec![],
@@ -81,15 +84,18 @@ impl Default for Report {
 }
 
 impl Report {
-    pub(super) fn start(&mut self, scheme: &Scheme, motion: &Motion, limits: Option<Limits>) {
+    pub(super) fn start(&mut self, scheme: &Scheme, motion: &Motion, settings: &Settings) {
         let Motion { state, survey, work, .. } = motion;
         self.see(survey);
+        if self.ends.last().is_none_or(|(_, end)| *end != settings.end) {
+            self.ends.push((state.step, settings.end));
+        }
         // After a pause the clocks and the balance go on.
         if self.first.is_none() {
             self.clock = (Instant::now(), ProcessTime::now());
             let first = scheme.totals(state);
             self.balance = work.has_balance().then(|| Balance::starting_at(first.accounted()));
-            self.watch = Watch::new(scheme, &first, limits);
+            self.watch = Watch::new(scheme, &first, settings.watch);
             self.min_j = self.min_j.min(first.min_j);
             self.treated = Treated::of(scheme);
             self.first = Some(first);
@@ -177,6 +183,7 @@ impl Report {
             ("dt_min", if self.steps > 0 { json!(self.dt[0]) } else { Value::Null }),
             ("dt_max", json!(self.dt[1])),
             ("end_time", json!(state.time)),
+            ("ends", json!(self.ends)),
             ("threads", json!(rayon::current_num_threads())),
             ("cpu_seconds", json!(self.cpu)),
             ("wall_seconds", json!(self.wall)),

@@ -28,6 +28,8 @@ impl Report {
         self.overlap.iter().for_each(|DeepestOverlap { depth, share, x }| {
             to.real(*depth).real(*share).real(x[0]).real(x[1]);
         });
+        to.count(self.ends.len());
+        self.ends.iter().for_each(|(step, end)| drop(to.count(*step).real(*end)));
     }
 
     /// The figures of a run that goes on under a watch with these limits.
@@ -50,6 +52,9 @@ impl Report {
         out.watch = Watch::restored(from, limits)?;
         out.treated = if from.flag()? { Some(Treated::restored(from)?) } else { None };
         out.overlap = if from.flag()? { Some(restored_overlap(from)?) } else { None };
+        for _ in 0..from.count()? {
+            out.ends.push((from.count()?, from.real()?));
+        }
         Ok(out)
     }
 }
