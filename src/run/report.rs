@@ -40,6 +40,10 @@ pub struct Report {
     pub treated: Option<Treated>,
     /// The deepest overlap of bodies; none where no condition pairs any.
     pub overlap: Option<DeepestOverlap>,
+    /// Where a body was deepest in a rigid obstacle or wall; none where no condition is one.
+    pub in_obstacle: Option<DeepestOverlap>,
+    /// The angular momentum that bodies which keep theirs were not given back, since no step had lost the energy for it, kg m/s (a sum of sizes).
+    pub not_restored: Option<f64>,
     /// The smallest J that was seen in a state of the run, at its points, grid nodes and face points.
     pub min_j: f64,
     /// Bytes of operators, state and work.
@@ -72,6 +76,8 @@ impl Default for Report {
             watch: Watch::default(),
             treated: None,
             overlap: None,
+            in_obstacle: None,
+            not_restored: None,
             min_j: f64::INFINITY,
             bytes: 0,
             wall: 0.0,
@@ -122,6 +128,12 @@ impl Report {
         }
         if let Some(overlap) = work.overlap() {
             self.overlap = Some(self.overlap.unwrap_or_default().or(overlap));
+        }
+        if scheme.keeps_angular_momentum() {
+            self.not_restored = Some(self.not_restored.unwrap_or(0.0) + work.take_not_restored());
+        }
+        if let Some(depth) = work.in_obstacle() {
+            self.in_obstacle = Some(self.in_obstacle.unwrap_or_default().or(depth));
         }
         self.watch.step(scheme, state, work, self.balance.as_ref())
     }
@@ -213,6 +225,12 @@ impl Report {
         }
         if let Some(DeepestOverlap { depth, share, x }) = self.overlap {
             pairs.push(("contact_overlap", json!({ "depth": depth, "share_of_cell": share, "place": x })));
+        }
+        if let Some(DeepestOverlap { depth, share, x }) = self.in_obstacle {
+            pairs.push(("obstacle_overlap", json!({ "depth": depth, "share_of_cell": share, "place": x })));
+        }
+        if let Some(not_restored) = self.not_restored {
+            pairs.push(("angular_momentum_not_restored", json!(not_restored)));
         }
         let first = self.first.and_then(|first| first.angular_momentum);
         if let Some((first, last)) = first.zip(last.angular_momentum) {

@@ -89,7 +89,7 @@ fn a_flipped_byte_a_missing_file_and_a_torn_row_are_found_in_each_kind_of_file()
 fn a_whole_file_under_the_name_of_another_is_found_with_and_without_the_hashes_of_the_list() {
     let bench = Bench::new();
     bench.run("run case.toml --out r");
-    bench.run("run case.toml --out s --set material.0.density=7900 --set cloud.layout=\"midpoints\"");
+    bench.run("run case.toml --out s --set material.0.density=7900 --set scheme.degree=1");
     let list = fs::read_to_string(bench.path("r/.dgmpm")).unwrap();
     let names: String = list.lines().map(|line| line.split('\t').next().unwrap().to_owned() + "\n").collect();
     let snapshots = snapshot::list(&bench.path("r/snapshots")).unwrap();
@@ -129,7 +129,7 @@ fn a_whole_file_under_the_name_of_another_is_found_with_and_without_the_hashes_o
 #[test]
 fn a_run_that_was_extended_after_few_steps_is_repeated_as_it_was() {
     let bench = Bench::new();
-    bench.run("run case.toml --out r --set time.end=9e-6 --set regrid=[]");
+    bench.run("run case.toml --out r --set time.end=9e-6 --set regrid=[] --set quantity=[]");
     let first = snapshot::list(&bench.path("r/snapshots")).unwrap().pop().unwrap().0;
     bench.run("resume r --set time.end=2.1e-5");
     bench.run("resume r --set time.end=5e-5");
