@@ -38,8 +38,10 @@ impl Block<'_> {
         let line = &self.scheme.operators.line;
         let memory = self.scheme.boundary_memory.of_point(memory, [self.number, face, lane, point]);
         let (mut force, mut push) = ([0.0; 2], [0.0; 2]);
-        for &(segment, side) in met_by {
-            let segment = &met.meetings.segments[segment];
+        let mut shares = vec![];
+        for &(number, side) in met_by {
+            let segment = &met.meetings.segments[number];
+            let before = [0, 1].map(|i| force[i] + push[i]);
             let law = contacts.law(segment.pairing);
             // The points of a cut are those of the faces: `share` is 0 but at one, whose memory this is.
             for at in &segment.points[..line.m] {
@@ -56,6 +58,9 @@ impl Block<'_> {
                 (0..2).for_each(|i| force[i] += weight * t[i]);
                 (0..2).for_each(|i| push[i] -= weight * pressure * normal[i]);
             }
+            if met.meetings.received.is_some() {
+                shares.push((number, side, [0, 1].map(|i| force[i] + push[i] - before[i])));
+            }
         }
         let at = self.face_point(face, point, lane);
         let length = self.metric().lane(lane).length(face);
@@ -66,6 +71,9 @@ impl Block<'_> {
         let inside = Trace { f, v: [x(4), x(5)], t: [x(6), x(7)], c: self.law().speeds(f, at.normal) };
         let dv = at.characteristic(&inside).solve([t[0] - inside.t[0], t[1] - inside.t[1]]);
         let v = [inside.v[0] + dv[0], inside.v[1] + dv[1]];
+        if let Some(received) = &met.meetings.received {
+            shares.into_iter().for_each(|(segment, side, share)| received[segment][side].add(share, v, self.factor()));
+        }
         Some(star(v, [t[0] + push[0], t[1] + push[1]], at.normal))
     }
 

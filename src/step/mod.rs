@@ -40,6 +40,7 @@ mod obstacles;
 mod outside;
 pub mod phase;
 mod predictor;
+mod received;
 mod rescue;
 mod rotation;
 mod runge_kutta;

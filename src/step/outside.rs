@@ -108,6 +108,9 @@ impl Work {
     pub fn with_forces(mut self) -> Self {
         self.outside.forces = Some(vec![FaceForces::default(); self.outside.entries.len()]);
         self.outside.sums = vec![Default::default(); self.next.received.len()];
+        if let Some(meetings) = &mut self.meetings {
+            meetings.received = Some(vec![]);
+        }
         self
     }
 
@@ -142,5 +145,6 @@ impl Work {
         };
         self.next.received.clear();
         self.next.received.extend(before.iter().zip(sums.iter()).map(received));
+        self.receive_from_pairs(scheme.boundaries.len());
     }
 }
