@@ -49,6 +49,10 @@ struct Place {
 /// How far beyond an end of a face the nearest place to a tip may lie; it is taken back to the end. A tip between two faces meets at least one.
 const BEYOND: f64 = 0.05;
 
+/// The same where the boundary goes on: both faces hold a tip near the end at which they join. With .05 the end of the other face fell past a
+/// disc that lay a tenth of a cell away from it.
+const JOINED: f64 = 0.25;
+
 /// Steps of Newton's method to the place of a face that is nearest to a tip, from its place along the chord.
 const NEWTON: usize = 5;
 
@@ -93,8 +97,9 @@ impl WholeFace<'_> {
             let end = usize::from(s == 1.0);
             if let Some(on) = self.beyond[end] {
                 let (next, away) = (self.next_normal(end, on), if end == 0 { slope.map(|x| -x) } else { slope });
-                // The other face has it; or it lies beside a corner that stands out.
-                if over && dot(from, on) >= 0.0 || dot(away, next) > 0.0 && dot(from, next) > tip.radius {
+                // The other face has it, if this end is not in a disc, too; or it lies beside a corner that stands out.
+                let is_in = from[0].hypot(from[1]) < tip.radius;
+                if over && dot(from, on) >= 0.0 && !is_in || dot(away, next) > 0.0 && dot(from, next) > tip.radius {
                     return None;
                 }
             }
@@ -148,7 +153,8 @@ impl WholeFace<'_> {
             let place = along(&self.basis.values(out.s), moved);
             out.from = [0, 1].map(|k| x[k] - (a[k] + out.s * edge[k] + place[k]));
             let next = out.s + dot(out.from, out.slope) / dot(out.slope, out.slope).max(f64::MIN_POSITIVE);
-            out.over = next < -BEYOND && out.s <= 0.0 || next > 1.0 + BEYOND && out.s >= 1.0;
+            let beyond = self.beyond.map(|on| if on.is_some() { JOINED } else { BEYOND });
+            out.over = next < -beyond[0] && out.s <= 0.0 || next > 1.0 + beyond[1] && out.s >= 1.0;
             if out.over {
                 let end = usize::from(out.s >= 1.0);
                 return self.beyond[end].is_some().then_some(out);

@@ -122,7 +122,7 @@ impl Track for Forces {
             let (received, force) = (from.reals()?, from.reals()?);
             // The columns have the order of the first mesh.
             let giver = self.groups.iter().find(|group| group.name == name).map(|group| group.giver);
-            let ([one, two, work], [x, y], Some(giver)) = (&received[..], &force[..], number) else {
+            let ([one, two, work], [x, y], Some(giver)) = (&received[..], &force[..], giver) else {
                 let what = format!("the checkpoint has forces of \"{name}\", which this output does not follow");
                 return Err(Error::input(what, "resume with the outputs of that run"));
             };
