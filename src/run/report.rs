@@ -223,11 +223,17 @@ impl Report {
         if let Some(treated) = &self.treated {
             pairs.push(("treated_cells", treated.json()));
         }
-        if let Some(DeepestOverlap { depth, share, x }) = self.overlap {
-            pairs.push(("contact_overlap", json!({ "depth": depth, "share_of_cell": share, "place": x })));
-        }
-        if let Some(DeepestOverlap { depth, share, x }) = self.in_obstacle {
-            pairs.push(("obstacle_overlap", json!({ "depth": depth, "share_of_cell": share, "place": x })));
+        self.push_of_bodies(&mut pairs, &last);
+        pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+    }
+}
+
+impl Report {
+    /// Adds what bodies do to each other and to obstacles, and their angular momentum.
+    fn push_of_bodies(&self, pairs: &mut Vec<(&str, Value)>, last: &Totals) {
+        for (key, deepest) in [("contact_overlap", self.overlap), ("obstacle_overlap", self.in_obstacle)] {
+            let Some(DeepestOverlap { depth, share, x }) = deepest else { continue };
+            pairs.push((key, json!({ "depth": depth, "share_of_cell": share, "place": x })));
         }
         if let Some(not_restored) = self.not_restored {
             pairs.push(("angular_momentum_not_restored", json!(not_restored)));
@@ -236,11 +242,8 @@ impl Report {
         if let Some((first, last)) = first.zip(last.angular_momentum) {
             pairs.push(("angular_momentum", json!([first, last])));
         }
-        pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
     }
-}
 
-impl Report {
     /// Work of the outside; where faces act on each other, theirs as well.
     fn work_json(&self) -> Value {
         let [boundary, sources] = self.watch.work;
