@@ -30,7 +30,9 @@ impl Report {
         self.in_obstacle.iter().for_each(|deepest| save_overlap(deepest, to));
         to.flag(self.not_restored.is_some()).real(self.not_restored.unwrap_or(0.0));
         to.count(self.ends.len());
-        self.ends.iter().for_each(|(step, end)| drop(to.count(*step).real(*end)));
+        for (step, end) in &self.ends {
+            to.count(*step).real(*end);
+        }
     }
 
     /// The figures of a run that goes on under a watch with these limits.
