@@ -12,7 +12,7 @@ use crate::observe::{Contents, Ledger, Line, Observer, Outside, Samples, Schedul
 use crate::quantity::{Extent, Length, Places, Quantity};
 use crate::run::Folder;
 use crate::step::{Law, Scheme};
-use crate::track::{Energies, Extremes, Forces, Giver, Lengths, Probe, Track, Tracked};
+use crate::track::{Energies, Extremes, Forces, Lengths, Probe, Track, Tracked};
 
 /// What there is to know of an output.
 pub struct Output {

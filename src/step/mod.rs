@@ -232,7 +232,7 @@ pub(crate) struct Stage<'a> {
     /// From t_n to a Runge-Kutta stage, c_i dt, s; 0 for ADER, whose time nodes have their own.
     pub elapsed: f64,
     /// Faces under obstacles at the start of the step; none where no condition is one.
-    pub obstacles: Option<&'a obstacles::Obstacles>,
+    obstacles: Option<&'a obstacles::Obstacles>,
 }
 
 /// Runs `body` with the scratch of the current thread. Uncontended: a thread holds one block at a time.
