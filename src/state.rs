@@ -38,7 +38,7 @@ pub struct State {
     /// The displacement that a grid of this run began with, `[block][component][node]`, whose jumps are not held: they are those of
     /// the projection. Empty on the first grid.
     pub unheld: Vec<F8>,
-    /// By boundary group of the mesh; empty where nobody asks for it ([`crate::step::Motion::with_forces`]).
+    /// By boundary group of the mesh, then by contact pair ([`crate::step::Scheme::receivers`]); empty where nobody asks for it ([`crate::step::Motion::with_forces`]).
     pub received: Vec<Received>,
 }
 

@@ -26,6 +26,18 @@ pub fn dot<L: Lane>(a: [L; 2], b: [L; 2]) -> L {
     a[0].mul_add(b[0], a[1] * b[1])
 }
 
+/// a_1 b_2 - a_2 b_1.
+#[inline(always)]
+pub fn cross<L: Lane>(a: [L; 2], b: [L; 2]) -> L {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// a - b.
+#[inline(always)]
+pub fn minus<L: Lane>(a: [L; 2], b: [L; 2]) -> [L; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
 /// A : B
 #[inline(always)]
 pub fn contract<L: Lane>(a: [L; 4], b: [L; 4]) -> L {

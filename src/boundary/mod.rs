@@ -95,6 +95,18 @@ pub trait Boundary: Send + Sync {
         None
     }
 
+    /// The gap to an obstacle at a point X with this memory, below 0 inside of it, m; none where the condition is no obstacle.
+    fn gap(&self, _x: [f64; 2], _memory: &[f64]) -> Option<f64> {
+        None
+    }
+
+    /// How deep a face lies in the obstacle, m; the `inside` of the face may be empty. By default that of its deepest point.
+    fn depth(&self, face: &WholeFace, memory: &[f64]) -> f64 {
+        let width = memory.len() / face.points.len();
+        let gaps = face.points.iter().enumerate().filter_map(|(i, at)| self.gap(at.x, &memory[i * width..][..width]));
+        gaps.fold(0.0, |deepest, gap| deepest.max(-gap))
+    }
+
     /// Whether it looks at whole faces, by [`Boundary::face_flux`]; not by default.
     fn sees_faces(&self) -> bool {
         false

@@ -32,6 +32,23 @@ impl Boundary for Obstacle {
         &[0.0; 2]
     }
 
+    fn gap(&self, x: [f64; 2], memory: &[f64]) -> Option<f64> {
+        Some(self.shape.distance([x[0] + memory[0], x[1] + memory[1]]).0)
+    }
+
+    fn depth(&self, face: &WholeFace, memory: &[f64]) -> f64 {
+        let (moved, _) = memory.as_chunks::<2>();
+        let mut deepest = 0.0_f64;
+        for (i, at) in face.points.iter().enumerate() {
+            let (gap, out) = self.shape.distance([at.x[0] + moved[i][0], at.x[1] + moved[i][1]]);
+            if gap < 0.0 && dot(face.normal_at(i, moved), out) < 0.0 {
+                deepest = deepest.max(-gap);
+            }
+        }
+        self.shape.each_tip(|tip| deepest = face.touch(&tip, moved).map_or(deepest, |touch| deepest.max(touch.depth)));
+        deepest
+    }
+
     fn sees_faces(&self) -> bool {
         self.shape.has_tips()
     }
@@ -49,7 +66,7 @@ impl Boundary for Obstacle {
             let normal = out.map(|out| -out);
             if gap <= 0.0 && looks(inside, at, normal) {
                 let values = (0..moved.len()).map(|k| f64::from(u8::from(k == i))).collect();
-                touches.push(Touch { normal, values, force: [0.0; 2] });
+                touches.push(Touch { normal, values, force: [0.0; 2], depth: -gap });
             }
         }
         let w = self.velocity_at(&face.points[0], when);

@@ -1,6 +1,6 @@
 //! The shapes of rigid obstacles: the signed distance of a point, and the normal there.
 
-use crate::tensor::dot;
+use crate::tensor::{cross, dot, minus};
 
 /// A rigid obstacle in the plane, where it stands at the start.
 #[derive(Debug, Clone, PartialEq)]
@@ -131,12 +131,4 @@ fn of_polygon(corners: &[[f64; 2]], x: [f64; 2]) -> (f64, [f64; 2]) {
 
 fn edges(corners: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + '_ {
     corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
-}
-
-pub(super) fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
 }

@@ -32,6 +32,10 @@ impl Boundary for Unilateral {
         &self.gap
     }
 
+    fn gap(&self, _: [f64; 2], memory: &[f64]) -> Option<f64> {
+        Some(memory[0])
+    }
+
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, memory: &mut [f64]) -> [f64; 6] {
         let (n, gap) = (at.normal, &mut memory[0]);
         let moving = self.speed.as_ref().map_or(0.0, |speed| mean(speed, at.x, when));

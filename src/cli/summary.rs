@@ -14,6 +14,13 @@ pub fn print(outcome: &Outcome, got_to_its_end: bool) {
     if watch.warned() && got_to_its_end {
         warn(format!("{}: do not trust these results; `energy_made` in summary.json", watch.made));
     }
+    if let Some(deepest) = outcome.report.in_obstacle.filter(|deepest| deepest.share > WORTH_NAMING) {
+        let ([x, y], percent) = (deepest.x, 100.0 * deepest.share);
+        warn(format!(
+            "the body was {percent:.0} % of a cell deep in an obstacle, on the face at X = ({x:.4}, {y:.4}): an obstacle that is small beside the cells may go through it; \
+             smaller cells help"
+        ));
+    }
     if let Some(overlap) = outcome.report.overlap.filter(|overlap| overlap.share > WORTH_NAMING) {
         let ([x, y], percent) = (overlap.x, 100.0 * overlap.share);
         warn(format!(

@@ -1,10 +1,10 @@
 //! `dgmpm verify`: whether the folder of a run is whole, and whether this machine gives its bits.
 
-use super::print::{say, table};
+use super::print::{note, say, table};
 use super::threads::start_threads;
 use crate::error::{Error, Result};
 use crate::format::{Row, count, row};
-use crate::problem::{Repeated, kernel_of_run, repeat};
+use crate::problem::{Repeated, kernel_of_run, look, repeat};
 use crate::run::{Folder, Whole};
 use std::path::PathBuf;
 
@@ -25,7 +25,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     args.threads.map_or(Ok(()), start_threads)?;
     let folder = Folder::new(&args.run);
-    let whole = Whole::look(&folder)?;
+    let whole = look(&folder)?;
     table(&rows(&whole));
     if !whole.faults.is_empty() {
         let what = format!("{} is not whole", folder.root.display());
@@ -35,15 +35,15 @@ pub fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     let kernel = kernel_of_run(&folder, &whole.summary)?;
-    let Repeated { steps, snapshots, rows, differs } = repeat(&folder, args.steps, kernel)?;
+    let Repeated { steps, snapshots, rows, notes, differs } = repeat(&folder, &whole.summary, args.steps, kernel)?;
+    notes.iter().for_each(note);
     if !differs.is_empty() {
-        let what = format!("{} steps done again on {} have other bits than the run", steps, kernel.name());
-        let hint =
-            "a run that was extended by `resume` is repeated up to its first end alone: give fewer --steps".to_owned();
-        return Err(Error::NotWhole([vec![what], differs, vec![hint]].concat()));
+        let what = format!("{} done again on {} have other bits than the run", count(steps, "step"), kernel.name());
+        return Err(Error::NotWhole([vec![what], differs].concat()));
     }
-    let (snapshots, rows) = (count(snapshots, "snapshot"), count(rows, "row"));
-    say(format!("{steps} steps done again on {}: the same bits in {snapshots} and {rows} of tables", kernel.name()));
+    let of = |[start, behind]: [usize; 2], one: &str| format!("{} ({start} of the start)", count(start + behind, one));
+    let (steps, snapshots, rows) = (count(steps, "step"), of(snapshots, "snapshot"), of(rows, "row"));
+    say(format!("{steps} done again on {}: the same bits in {snapshots} and {rows} of tables", kernel.name()));
     Ok(())
 }
 

@@ -51,6 +51,25 @@ pub fn put(path: &Path) -> Result<()> {
     file.write_all(&[MARK, digits.as_bytes(), b"\n"].concat())
 }
 
+/// The hash that stands in the seal of a file or a text, given by its last bytes; none where these hold no seal. Whether the bytes before
+/// it have this hash, [`check`] says.
+pub fn hash_in(bytes: &[u8]) -> Option<blake3::Hash> {
+    let mark = MARK.trim_ascii_start();
+    let start = bytes.windows(mark.len()).rposition(|window| window == mark)? + mark.len();
+    let digits = std::str::from_utf8(bytes.get(start..start + DIGITS)?).ok()?;
+    blake3::Hash::from_hex(digits).ok()
+}
+
+/// The same of a file.
+pub fn hash_of(path: &Path) -> Option<blake3::Hash> {
+    let mut file = File::open(path).ok()?;
+    let length = file.metadata().ok()?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(2 * LENGTH))).ok()?;
+    let mut end = Vec::new();
+    file.read_to_end(&mut end).ok()?;
+    hash_in(&end)
+}
+
 /// Checks the seal of a file.
 pub fn check(path: &Path) -> Result<Seal> {
     let mut file = File::open(path)?;
@@ -123,6 +142,7 @@ mod tests {
         assert_eq!(check_text(whole.as_bytes()), Seal::Whole);
         assert_eq!(text(&whole, ["# ", ""]), whole, "sealed twice");
         let mark = whole.find("dgmpm-seal ").unwrap();
+        assert_eq!(hash_in(whole.as_bytes()), Some(blake3::hash(b"a = 1\nb = 2\n")));
         for at in 0..whole.len() {
             let mut other = whole.clone().into_bytes();
             other[at] ^= 1;

@@ -104,6 +104,14 @@ fn remove_older(folder: &Path, path: &Path) -> Result<()> {
     Ok(())
 }
 
+/// Those of the names of a run's files that are the checkpoints which it keeps: the last ones.
+pub fn kept<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let step = |name: &str| name.strip_prefix("checkpoints/")?.strip_suffix(".h5")?.parse::<usize>().ok();
+    let mut all: Vec<(usize, &str)> = names.filter_map(|name| Some((step(name)?, name))).collect();
+    all.sort_unstable();
+    all.iter().rev().take(KEPT).map(|(_, name)| (*name).to_owned()).collect()
+}
+
 /// The checkpoints of a folder, as (step, file), in the order of steps; none where it is not there.
 ///
 /// # Errors

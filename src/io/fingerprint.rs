@@ -1,6 +1,9 @@
 //! What a state was made on: mesh, points and laws of a scheme in a few texts, so that a state of another body is refused.
 
 use super::hash::Digest;
+use crate::cloud::Cloud;
+use crate::mesh::Mesh;
+use crate::mesh::map::Corners;
 use crate::step::{Law, Scheme};
 
 /// The attributes of a fingerprint.
@@ -27,14 +30,27 @@ impl Fingerprint {
     /// That of a scheme.
     pub fn of(scheme: &Scheme) -> Self {
         let (blocks, geometry) = (&scheme.operators.blocks, &scheme.operators.geometry);
+        let cells = blocks.slot.iter();
+        let cells = cells.map(|&(block, lane)| (blocks.material[block], geometry.corners_of(block, lane)));
+        Self::of_parts(cells, &scheme.laws, points(&scheme.operators.line.nodes(), &scheme.places()))
+    }
+
+    /// That of a scheme which would be made of a mesh with the law of each cell, of laws, and of the places where these are evaluated;
+    /// `nodes` are the Gauss nodes of a cell.
+    pub fn of_body(mesh: &Mesh, material: &[usize], laws: &[Law], nodes: &[[f64; 2]], places: &Cloud) -> Self {
+        let cells = material.iter().enumerate().map(|(cell, &law)| (law, mesh.corners(cell)));
+        Self::of_parts(cells, laws, points(nodes, places))
+    }
+
+    fn of_parts(cells: impl Iterator<Item = (usize, Corners)>, laws: &[Law], points: String) -> Self {
         let mut mesh = Digest::new();
-        for &(block, lane) in &blocks.slot {
-            mesh.count(blocks.material[block]).reals(geometry.corners_of(block, lane).as_flattened().iter().copied());
+        for (law, corners) in cells {
+            mesh.count(law).reals(corners.as_flattened().iter().copied());
         }
-        let mut laws = Digest::new();
-        scheme.laws.iter().for_each(|law| of_law(law, &mut laws));
-        let densities: Vec<String> = scheme.laws.iter().map(|law| law.density().to_string()).collect();
-        Self { mesh: mesh.finish(), points: points(scheme), densities: densities.join(", "), laws: laws.finish() }
+        let mut all = Digest::new();
+        laws.iter().for_each(|law| of_law(law, &mut all));
+        let densities: Vec<String> = laws.iter().map(|law| law.density().to_string()).collect();
+        Self { mesh: mesh.finish(), points, densities: densities.join(", "), laws: all.finish() }
     }
 
     /// What is known, under its names.
@@ -44,7 +60,7 @@ impl Fingerprint {
     }
 
     /// By the attributes of a file, empty where it has none of a name.
-    pub(super) fn by(attribute: impl Fn(&str) -> String) -> Self {
+    pub fn by(attribute: impl Fn(&str) -> String) -> Self {
         let [mesh, points, densities, laws] = KEYS.map(attribute);
         Self { mesh, points, densities, laws }
     }
@@ -75,11 +91,10 @@ impl Fingerprint {
     }
 }
 
-fn points(scheme: &Scheme) -> String {
-    let (nodes, places) = (scheme.operators.line.nodes(), scheme.places());
-    match (0..places.first.len() - 1).all(|cell| places.of(cell) == nodes) {
+fn points(nodes: &[[f64; 2]], places: &Cloud) -> String {
+    match (0..places.first.len() - 1).all(|cell| *places.of(cell) == *nodes) {
         true => NODES.to_owned(),
-        false => super::hash::of_cloud(&places),
+        false => super::hash::of_cloud(places),
     }
 }
 

@@ -2,7 +2,7 @@
 //! the folder. A name comes onto the list before the file appears, so that a killed run leaves no file without its name.
 //! What is not on the list belongs to the user: it is neither removed nor replaced.
 //!
-//! A file that has no seal of its own, such as a table, has its blake3 hash behind its name and a tab, once it is complete. The last line
+//! A file has its blake3 hash behind its name and a tab, once it is complete; one with a seal the hash that is in the seal. The last line
 //! of a name counts: one without a hash says that the file is being written, and one with a tab and nothing behind it that it was not made.
 //!
 //! A folder without the list is no folder of a run; nothing is noted there.
@@ -29,7 +29,7 @@ pub fn note(target: &Path) -> Result<()> {
     if target.symlink_metadata().is_ok() { Ok(()) } else { begin(target) }
 }
 
-/// Says that a file without a seal is being written: a hash that the list has of it no longer counts.
+/// Says that a file is being written: a hash that the list has of it no longer counts.
 ///
 /// # Errors
 /// A list that cannot be written.
@@ -37,7 +37,7 @@ pub fn begin(target: &Path) -> Result<()> {
     place(target).map_or(Ok(()), |(root, name)| append(&root, &format!("{name}\n")))
 }
 
-/// Says that a file without a seal is complete, and has this hash.
+/// Says that a file is complete, and has this hash, or this one in its seal.
 ///
 /// # Errors
 /// A list that cannot be written.
@@ -83,8 +83,7 @@ pub fn read(root: &Path) -> BTreeSet<String> {
     hashes(root).into_keys().collect()
 }
 
-/// The names on the list of a folder, each with the hash of its file in hexadecimal digits: none of files that have a seal, and of files
-/// that are being written.
+/// The names on the list of a folder, each with the hash of its file in hexadecimal digits: none of files that are being written.
 pub fn hashes(root: &Path) -> BTreeMap<String, Option<String>> {
     let text = std::fs::read(root.join(LIST)).unwrap_or_default();
     let text = String::from_utf8_lossy(&text).into_owned();

@@ -47,9 +47,20 @@ impl Pending {
         &self.target
     }
 
-    /// Renames the file to its target and replaces a file of that name.
+    /// Renames the file to its target and replaces a file of that name. The hash in its seal, if it has one, goes to the list of the
+    /// folder of a run, so that another whole file under this name is told from it.
     pub fn commit(self) -> Result<()> {
-        fs::rename(&self.temporary, &self.target).map_err(|e| Error::output(&self.target, e))
+        let Some(hash) = seal::hash_of(&self.temporary) else {
+            return fs::rename(&self.temporary, &self.target).map_err(|e| Error::output(&self.target, e));
+        };
+        // A kill between the two leaves a file that is whole by its seal, and no hash of the file that was there before.
+        if self.target.exists() {
+            own::begin(&self.target)?;
+        }
+        fs::rename(&self.temporary, &self.target).map_err(|e| Error::output(&self.target, e))?;
+        // The file is whole by its seal: a list that has no space is no loss of it.
+        let _ = own::finish(&self.target, &hash);
+        Ok(())
     }
 
     /// The same, once the disk has the bytes: after a power cut there is the old file or the new one.

@@ -43,7 +43,7 @@ impl Provenance {
     }
 
     /// By the attributes of a file, empty where it has none of a name.
-    pub(super) fn by(attribute: impl Fn(&str) -> String) -> Self {
+    pub fn by(attribute: impl Fn(&str) -> String) -> Self {
         let [program, commit, kernel, scene, operators] = KEYS.map(attribute);
         Self { program, commit, kernel, scene, operators }
     }

@@ -5,8 +5,8 @@
 //! p2 at the Gauss nodes (node i along xi1, j along xi2); `displacement` (cells, 2, M, M) or empty; `internal` (n), the
 //! internal variables point by point: cells in the order of the mesh, points in that of the cloud (nodes a = i M + j for
 //! ADER-DGFEM and RK-DGFEM), variables in that of the cell's law, which may have none; `boundary` (n), the memory of boundary
-//! conditions, likewise; `received` (groups, 3), what the body has received through each boundary group since the run began (impulse in
-//! N s/m and work in J/m), where an output asks for it; `corrected`, `rescued` (cells), what a limiter and the rescue did, where the run has one. Attributes
+//! conditions, likewise; `received` (groups and 2 pairs, 3), what the body has received through each boundary group, and each side of a
+//! contact pair from the other one, since the run began (impulse in N s/m and work in J/m), where an output asks for it; `corrected`, `rescued` (cells), what a limiter and the rescue did, where the run has one. Attributes
 //! `mesh`, `cloud`: the files of the run folder that the state lives on; `mesh_hash`, `points_hash`, `densities`, `laws_hash`: what it was
 //! made on ([`Fingerprint`]); `program`, `commit`, `kernel`, `scene_hash`, `operators_hash`: by which program it was made, and from what
 //! ([`Provenance`]).

@@ -42,7 +42,12 @@ impl Again {
         check_same_input(scene, &Files::default().body(scene)?, folder)?;
         let has_checkpoint = !checkpoint::list(&folder.checkpoints())?.is_empty();
         match folder.is_done() {
-            true if old.end >= new.end => Ok(Self::Done(format!("{root} has this run, done at {:.6e} s", old.end))),
+            true if old.end == new.end => Ok(Self::Done(format!("{root} has this run, done at {:.6e} s", old.end))),
+            true if old.end > new.end => Ok(Self::Done(format!(
+                "{root} has this run, done at {:.6e} s, which is later than the end {:.6e} s that is asked for: nothing is done, and its results are those \
+                 of the later end",
+                old.end, new.end
+            ))),
             true if !has_checkpoint => {
                 let what = format!("the run in {root} is done, and has no checkpoint to go on from to a later end");
                 Err(new.error("time.end", what, "run the scene again with --force, with [checkpoint] in it"))

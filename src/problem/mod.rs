@@ -14,6 +14,7 @@
 //! ```
 
 mod again;
+mod belongs;
 mod body;
 mod build;
 pub mod certificates;
@@ -24,6 +25,7 @@ mod cost_rows;
 mod culprit;
 pub mod effects;
 mod ended;
+mod ends;
 mod exact;
 mod from_cloud;
 mod from_snapshot;
@@ -66,7 +68,7 @@ pub use solve::Solve;
 pub use stopped::{Stopped, changes};
 pub use store::{Recent, Store};
 pub use summary::Outcome;
-pub use verify::{Repeated, kernel_of_run, repeat};
+pub use verify::{Repeated, kernel_of_run, look, repeat};
 
 use crate::built;
 use crate::error::{Error, Result};

@@ -40,6 +40,7 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     all.extend(partly_inside(mesh, &mesh.edge_counts(), "these have no [[boundary]] and are free"));
     all.extend(cuts(scene, mesh));
     all.extend(overlap(scheme, state));
+    all.extend(in_obstacles(scene, mesh, scheme, state));
     all.extend(large(mesh));
     all.extend(fast_start(mesh, scheme, state, survey));
     all.extend(fast_boundary(scene, mesh, scheme));
@@ -87,6 +88,28 @@ fn overlap(scheme: &Scheme, state: &State) -> Option<String> {
         "bodies in contact overlap by {depth:.3e} m at the start, {:.0} % of a cell, at ({x:.4}, {y:.4}): they will be pushed apart",
         100.0 * share
     ))
+}
+
+/// A word on each group that lies in its obstacle at the start.
+fn in_obstacles(scene: &Scene, mesh: &Mesh, scheme: &Scheme, state: &State) -> Vec<String> {
+    let found = scheme.points_in_obstacles(state).into_iter();
+    let deep = found.filter(|(_, _, _, deepest)| deepest.share > STARTS_APART);
+    let text = |(group, count, of, DeepestOverlap { depth, share, x: [x, y] }): (
+        usize,
+        usize,
+        usize,
+        DeepestOverlap,
+    )| {
+        let name = &mesh.edge_groups[group];
+        let kind =
+            scene.boundaries.iter().find(|own| own.group == *name).map_or("obstacle", |own| own.condition.name());
+        format!(
+            "{count} of {of} points of group \"{name}\" lie in their {kind} at the start, the deepest by {depth:.3e} m, {:.0} % of a cell, at ({x:.4}, {y:.4}): an obstacle \
+             does not push out what lies in it, and holds only faces that look into it; move the obstacle or the body apart",
+            100.0 * share
+        )
+    };
+    deep.map(text).collect()
 }
 
 /// A word on each group with a condition along which the body is cut.

@@ -351,7 +351,8 @@ fn received_on(mesh: &Mesh, old: &Mesh, state: &State) -> Vec<Received> {
     }
     let number = |group: &String| old.edge_groups.iter().position(|known| known == group);
     let of = |group: &String| number(group).and_then(|k| state.received.get(k)).copied();
-    mesh.edge_groups.iter().map(|group| of(group).unwrap_or_default()).collect()
+    let pairs = state.received.get(old.edge_groups.len()..).unwrap_or_default();
+    mesh.edge_groups.iter().map(|group| of(group).unwrap_or_default()).chain(pairs.iter().copied()).collect()
 }
 
 /// F at points, in the order of the cloud.

@@ -74,9 +74,16 @@ impl Newest {
             return Err(Error::input(format!("the checkpoint is of another scene: {what}"), remedy));
         }
         // A run that was killed at its end has its last rows still before it.
-        if snapshot.time > scene.end || snapshot.time == scene.end && folder.is_done() {
-            let what = format!("the run is at its end, {:e} s", snapshot.time);
-            return Err(scene.error("time.end", what, "give a later end by --set time.end=.."));
+        let later = "give a later end by --set time.end=..";
+        if snapshot.time > scene.end {
+            let (time, step, end) = (snapshot.time, snapshot.step, scene.end);
+            let what = format!(
+                "the run has got to {time:e} s already (step {step}), beyond the end {end:e} s that is asked for"
+            );
+            return Err(scene.error("time.end", what, later));
+        }
+        if snapshot.time == scene.end && folder.is_done() {
+            return Err(scene.error("time.end", format!("the run is at its end, {:e} s", snapshot.time), later));
         }
         let kernel = kernel_of(&name, kernel)?;
         let body = Body::read(&scene, folder, &snapshot.grid)?;

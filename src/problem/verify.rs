@@ -1,33 +1,48 @@
 //! The first steps of a run, done again beside its folder: whether this machine gives its bits.
 
-use super::{Body, Setup, Store};
+use super::ends::Ends;
+use super::{Body, Setup, Store, belongs};
 use crate::error::{Error, Result};
 use crate::io::checkpoint;
 use crate::io::hdf5::peek_attribute;
 use crate::io::snapshot::{self, GridFiles, Snapshot};
 use crate::lane::Kernel;
 use crate::observe::{Observer, Schedule, View, When};
-use crate::run::Folder;
+use crate::run::{Folder, Whole};
 use crate::scene::Scene;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Steps that are done again where nobody says how many: up to the second row of the ledger, and at most so many.
 const MOST: usize = 100;
 /// At least so many.
 const LEAST: usize = 10;
 
+/// Looks at all files of a run: whether each is whole, of its kind and step, and of this run.
+///
+/// # Errors
+/// A folder without a run, or with one that goes on; a scene that cannot be read.
+pub fn look(folder: &Folder) -> Result<Whole> {
+    let mut whole = Whole::look(folder)?;
+    if whole.faults.is_empty() {
+        whole.faults = belongs::faults(folder, &whole.summary)?;
+    }
+    Ok(whole)
+}
+
 /// What steps that were done again have shown.
 #[derive(Debug, Default)]
 pub struct Repeated {
     /// Steps done.
     pub steps: usize,
-    /// Snapshots behind the start with the same bits.
-    pub snapshots: usize,
-    /// Rows of tables behind the start with the same text.
-    pub rows: usize,
+    /// Snapshots with the same bits, of the state at the start and of those behind it.
+    pub snapshots: [usize; 2],
+    /// Rows of tables with the same text, likewise.
+    pub rows: [usize; 2],
+    /// What a user should know of how the steps were done, a line each.
+    pub notes: Vec<String>,
     /// What has other bits, a line each.
     pub differs: Vec<String>,
 }
@@ -58,7 +73,7 @@ pub fn kernel_of_run(folder: &Folder, summary: &Value) -> Result<Kernel> {
 ///
 /// # Errors
 /// Files of the run that cannot be used; steps that cannot be done.
-pub fn repeat(folder: &Folder, steps: Option<usize>, kernel: Kernel) -> Result<Repeated> {
+pub fn repeat(folder: &Folder, summary: &Value, steps: Option<usize>, kernel: Kernel) -> Result<Repeated> {
     let private = tempfile::tempdir().map_err(|why| Error::output(&std::env::temp_dir(), why))?;
     let again = Folder::new(&private.path().join("again"));
     let scene = Scene::load(&folder.scene(), &[])?;
@@ -68,17 +83,32 @@ pub fn repeat(folder: &Folder, steps: Option<usize>, kernel: Kernel) -> Result<R
     let store = Store { look: &[&own], write: &write };
     let mut problem = Setup::of(&scene).kernel(kernel).store(store).build_on(body)?;
     let start = problem.state.step;
-    let steps = steps.unwrap_or_else(|| second_row(&folder.ledger(), start).clamp(LEAST, MOST));
-    let stop = Arc::new(AtomicBool::new(false));
-    let until =
-        StopAfter { schedule: Schedule::new(When::EverySteps(1), false), last: start + steps, stop: stop.clone() };
+    let mut out = Repeated::default();
+    // A folder that `preprocess` or `--operators` has given no matrices is no fault.
+    if !own.exists() {
+        out.notes.push("the folder has no operators.h5: the matrices were built again".to_owned());
+    }
+    let (ends, shortened) = Ends::of(folder, summary, &scene, start)?;
+    let mut steps = steps.unwrap_or_else(|| second_row(&folder.ledger(), start).clamp(LEAST, MOST));
+    if let Some(step) = shortened.filter(|step| start + steps > *step) {
+        steps = step.saturating_sub(start);
+        out.notes.push(format!("steps are done again up to step {step}, at which the run was given an earlier end"));
+    }
+    problem.settings.end = ends.last();
+    let stop = Arc::new(AtomicBool::new(steps == 0));
+    let until = StopAfter {
+        schedule: Schedule::new(When::EverySteps(1), false),
+        last: start + steps,
+        stop: stop.clone(),
+        now: ends.now.clone(),
+    };
     let never = AtomicBool::new(false);
-    let (report, result) = problem.record(&again, vec![Box::new(until)], [&stop, &never], |_, _| {});
+    let (report, result) = problem.record(&again, vec![Box::new(until), Box::new(ends)], [&stop, &never], |_, _| {});
     match result {
         Ok(()) | Err(Error::Interrupted(_)) => {}
         Err(why) => return Err(why),
     }
-    let mut out = Repeated { steps: report.steps, ..Repeated::default() };
+    out.steps = report.steps;
     out.compare_snapshots(folder, &again, start)?;
     for table in tables(&again.root) {
         out.compare_table(folder, &again, &table);
@@ -94,7 +124,7 @@ impl Repeated {
                 continue;
             }
             match Snapshot::read(&there)?.bits() == Snapshot::read(&path)?.bits() {
-                true => self.snapshots += usize::from(step > start),
+                true => self.snapshots[usize::from(step > start)] += 1,
                 false => self.differs.push(format!("the snapshot of step {step} has other bits")),
             }
         }
@@ -105,14 +135,15 @@ impl Repeated {
     fn compare_table(&mut self, run: &Folder, again: &Folder, name: &Path) {
         let text = |folder: &Folder| std::fs::read_to_string(folder.root.join(name)).unwrap_or_default();
         let (run, again) = (text(run), text(again));
-        // The header, and the row of the start.
-        let first = 2;
         for (number, (row, wanted)) in again.lines().zip(run.lines()).enumerate() {
             if row != wanted {
                 self.differs.push(format!("{} differs from line {} on", name.display(), number + 1));
                 return;
             }
-            self.rows += usize::from(number >= first);
+            // The header, the row of the start, and others.
+            if number > 0 {
+                self.rows[usize::from(number > 1)] += 1;
+            }
         }
     }
 }
@@ -140,6 +171,8 @@ struct StopAfter {
     schedule: Schedule,
     last: usize,
     stop: Arc<AtomicBool>,
+    /// The step that comes next.
+    now: Arc<AtomicUsize>,
 }
 
 impl Observer for StopAfter {
@@ -148,7 +181,10 @@ impl Observer for StopAfter {
     }
 
     fn observe(&mut self, view: &View) -> Result<()> {
-        self.stop.fetch_or(view.state.step >= self.last, Ordering::Relaxed);
+        let next = view.state.step + 1;
+        self.now.store(next, Ordering::Relaxed);
+        // The run looks at this before it shows a state, and goes on with the step under way.
+        self.stop.fetch_or(next >= self.last, Ordering::Relaxed);
         Ok(())
     }
 }

@@ -84,7 +84,8 @@ impl Force {
         let points: Vec<_> = basis.nodes.iter().map(|s| FacePoint { x: place(*s), normal, medium }).collect();
         let mut own: Vec<_> = points.iter().map(|_| memory.next().unwrap_or_default()).collect();
         let (condition, mut flux) = (&scheme.boundaries[self.group], vec![[0.0; 6]; points.len()]);
-        let whole = WholeFace { ends: [place(0.0), place(1.0)], points: &points, inside: &inside, basis };
+        let whole =
+            WholeFace { ends: [place(0.0), place(1.0)], points: &points, inside: &inside, basis, beyond: [None; 2] };
         if !condition.sees_faces() || !condition.face_flux(&whole, &when, &mut own.concat(), &mut flux) {
             for (i, flux) in flux.iter_mut().enumerate() {
                 *flux = condition.flux(&inside[i], &points[i], &when, &mut own[i]);

@@ -38,7 +38,7 @@ impl Condition {
         Self { make, joined: None, between: None, presses: false }
     }
 
-    /// An obstacle.
+    /// An obstacle, or a wall that the body leaves and reaches.
     const fn obstacle(make: fn(&Values) -> Arc<dyn Boundary>) -> Self {
         Self { presses: true, ..Self::of(make) }
     }
@@ -120,7 +120,7 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
         about: "rigid wall that the body may leave and reach, with gap and friction; `speed` moves it along the outward normal",
         parameters: &[Parameter::number("gap", "the gap at the start", "m", NOT_NEGATIVE, 0.0), SPEED, FRICTION],
         check: ANY,
-        build: Condition::of(|of| {
+        build: Condition::obstacle(|of| {
             let (gap, friction) = ([of.number("gap")], of.number("friction"));
             Arc::new(Unilateral { gap, speed: speed(of), friction })
         }),

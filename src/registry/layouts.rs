@@ -83,7 +83,7 @@ pub static LAYOUTS: Table<Layout> = Table::new(&[
     },
     Entry {
         name: "gauss",
-        about: "lattice of Gauss-Legendre points; the default for laws with internal variables, and of scenes with contact or obstacles",
+        about: "lattice of Gauss-Legendre points; the default for laws with internal variables, and of scenes with contact, obstacles or unilateral walls",
         parameters: &[],
         check: ANY,
         build: Layout { on_nodes: true, ..lattice(|_| of(seed::Layout::Gauss)) },

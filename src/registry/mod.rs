@@ -17,6 +17,7 @@ pub mod conditions;
 pub mod controls;
 pub mod fluxes;
 pub mod fields;
+mod givers;
 pub mod grids;
 pub mod laws;
 pub mod layouts;

@@ -4,11 +4,11 @@ use super::fields::{
     self, AXIS, COMPONENT, axis, check_component, component, field, field_names, has, known_fields, known_group,
     unit_of_field,
 };
+use super::givers;
 use super::{ANY, Chosen, Entry, FINITE, Fault, Field, Form, Parameter, Preset, Table, Value, Values};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::observe::{Contents, Ledger, Line, Observer, Outside, Samples, Schedule, Snapshots};
-use crate::operators::Neighbour;
 use crate::quantity::{Extent, Length, Places, Quantity};
 use crate::run::Folder;
 use crate::step::{Law, Scheme};
@@ -193,14 +193,22 @@ pub static OUTPUTS: Table<Output> = Table::new(&[
                 Form::Texts,
                 Preset::Absent("all on the boundary"),
             ),
+            Parameter::new(
+                "by",
+                "`\"group\"`: what the condition of each group gives to the body; `\"pair\"`: what each group in contact receives from each other one, in columns `a_by_b_..`",
+                "",
+                Form::Name(|| vec!["group", "pair"], &[]),
+                Preset::Name("group"),
+            ),
         ],
         check: ANY,
         build: Output {
             conditions: |of| of.texts("groups"),
             check: check_groups,
             ..Output::track(|of, to| {
-                let groups = groups(of.texts("groups"), to.mesh, to.scheme);
-                to.track(Forces::new(groups))
+                let all = if of.text("by") == "pair" { givers::pairs } else { givers::groups };
+                let givers = all(of.texts("groups"), to.mesh, to.scheme);
+                to.track(Forces::new(givers))
             })
         },
     },
@@ -325,21 +333,6 @@ fn check_groups(of: &Values, mesh: &Mesh) -> std::result::Result<(), Fault> {
         }
     }
     Ok(())
-}
-
-/// The groups of these names, or all that a face of the boundary belongs to, with their numbers.
-fn groups(names: &[String], mesh: &Mesh, scheme: &Scheme) -> Vec<(String, usize)> {
-    let mut faces = vec![false; mesh.edge_groups.len()];
-    for neighbour in scheme.operators.blocks.neighbours.iter().flatten().flatten() {
-        if let Neighbour::Boundary(group) = neighbour
-            && let Some(face) = faces.get_mut(*group)
-        {
-            *face = true;
-        }
-    }
-    let all = mesh.edge_groups.iter().enumerate().map(|(number, name)| (name.clone(), number));
-    let wanted = |name: &String, number: usize| if names.is_empty() { faces[number] } else { names.contains(name) };
-    all.filter(|(name, number)| wanted(name, *number)).collect()
 }
 
 fn samples(of: &Values, fields: Vec<Field>) -> Samples {

@@ -213,7 +213,7 @@ impl Run<'_, '_> {
         report: &mut Report,
     ) -> Result<End, Stop> {
         self.begin(keep.as_deref_mut(), motion)?;
-        report.start(self.scheme, motion, self.settings.watch);
+        report.start(self.scheme, motion, &self.settings);
         let mut kept = Kept::new(&motion.state, &motion.survey);
         let h = self.mesh.smallest_h();
         while motion.state.time < self.settings.end {

@@ -1,7 +1,7 @@
 //! What a run cost and what became of energy and momentum: the table at its end and `summary.json`.
 
-use super::watch::{Alarm, Limits, Watch};
-use super::{Kept, Treated};
+use super::watch::{Alarm, Watch};
+use super::{Kept, Settings, Treated};
 use crate::state::{State, UNKNOWNS};
 use crate::step::phase::{NAMES, Phases};
 use crate::step::{Balance, DeepestOverlap, Held, Motion, Scheme, Survey, Totals};
@@ -14,6 +14,8 @@ use std::time::Instant;
 pub struct Report {
     /// Steps done.
     pub steps: usize,
+    /// The ends that the run had, s, each with the step from which on it had it: a run that is extended by `resume` has several.
+    pub ends: Vec<(usize, f64)>,
     /// Smallest and largest step, s.
     pub dt: [f64; 2],
     /// Seconds per phase, summed over threads.
@@ -38,6 +40,10 @@ pub struct Report {
     pub treated: Option<Treated>,
     /// The deepest overlap of bodies; none where no condition pairs any.
     pub overlap: Option<DeepestOverlap>,
+    /// Where a body was deepest in a rigid obstacle or wall; none where no condition is one.
+    pub in_obstacle: Option<DeepestOverlap>,
+    /// The angular momentum that bodies which keep theirs were not given back, since no step had lost the energy for it, kg m/s (a sum of sizes).
+    pub not_restored: Option<f64>,
     /// The smallest J that was seen in a state of the run, at its points, grid nodes and face points.
     pub min_j: f64,
     /// Bytes of operators, state and work.
@@ -57,6 +63,7 @@ impl Default for Report {
     fn default() -> Self {
         Self {
             steps: 0,
+            ends: vec![],
             dt: [f64::INFINITY, 0.0],
             phases: Phases::default(),
             observed: vec![],
@@ -69,6 +76,8 @@ impl Default for Report {
             watch: Watch::default(),
             treated: None,
             overlap: None,
+            in_obstacle: None,
+            not_restored: None,
             min_j: f64::INFINITY,
             bytes: 0,
             wall: 0.0,
@@ -81,15 +90,18 @@ impl Default for Report {
 }
 
 impl Report {
-    pub(super) fn start(&mut self, scheme: &Scheme, motion: &Motion, limits: Option<Limits>) {
+    pub(super) fn start(&mut self, scheme: &Scheme, motion: &Motion, settings: &Settings) {
         let Motion { state, survey, work, .. } = motion;
         self.see(survey);
+        if self.ends.last().is_none_or(|(_, end)| *end != settings.end) {
+            self.ends.push((state.step, settings.end));
+        }
         // After a pause the clocks and the balance go on.
         if self.first.is_none() {
             self.clock = (Instant::now(), ProcessTime::now());
             let first = scheme.totals(state);
             self.balance = work.has_balance().then(|| Balance::starting_at(first.accounted()));
-            self.watch = Watch::new(scheme, &first, limits);
+            self.watch = Watch::new(scheme, &first, settings.watch);
             self.min_j = self.min_j.min(first.min_j);
             self.treated = Treated::of(scheme);
             self.first = Some(first);
@@ -116,6 +128,12 @@ impl Report {
         }
         if let Some(overlap) = work.overlap() {
             self.overlap = Some(self.overlap.unwrap_or_default().or(overlap));
+        }
+        if scheme.keeps_angular_momentum() {
+            self.not_restored = Some(self.not_restored.unwrap_or(0.0) + work.take_not_restored());
+        }
+        if let Some(depth) = work.in_obstacle() {
+            self.in_obstacle = Some(self.in_obstacle.unwrap_or_default().or(depth));
         }
         self.watch.step(scheme, state, work, self.balance.as_ref())
     }
@@ -182,6 +200,7 @@ impl Report {
             ("dt_min", if self.steps > 0 { json!(self.dt[0]) } else { Value::Null }),
             ("dt_max", json!(self.dt[1])),
             ("end_time", json!(state.time)),
+            ("ends", json!(self.ends)),
             ("threads", json!(rayon::current_num_threads())),
             ("cpu_seconds", json!(self.cpu)),
             ("wall_seconds", json!(self.wall)),
@@ -209,18 +228,27 @@ impl Report {
         if let Some(treated) = &self.treated {
             pairs.push(("treated_cells", treated.json()));
         }
-        if let Some(DeepestOverlap { depth, share, x }) = self.overlap {
-            pairs.push(("contact_overlap", json!({ "depth": depth, "share_of_cell": share, "place": x })));
-        }
-        let first = self.first.and_then(|first| first.angular_momentum);
-        if let Some((first, last)) = first.zip(last.angular_momentum) {
-            pairs.push(("angular_momentum", json!([first, last])));
-        }
+        self.push_of_bodies(&mut pairs, &last);
         pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
     }
 }
 
 impl Report {
+    /// Adds what bodies do to each other and to obstacles, and their angular momentum.
+    fn push_of_bodies(&self, pairs: &mut Vec<(&str, Value)>, last: &Totals) {
+        for (key, deepest) in [("contact_overlap", self.overlap), ("obstacle_overlap", self.in_obstacle)] {
+            let Some(DeepestOverlap { depth, share, x }) = deepest else { continue };
+            pairs.push((key, json!({ "depth": depth, "share_of_cell": share, "place": x })));
+        }
+        if let Some(not_restored) = self.not_restored {
+            pairs.push(("angular_momentum_not_restored", json!(not_restored)));
+        }
+        let first = self.first.and_then(|first| first.angular_momentum);
+        if let Some((first, last)) = first.zip(last.angular_momentum) {
+            pairs.push(("angular_momentum", json!([first, last])));
+        }
+    }
+
     /// Work of the outside; where faces act on each other, theirs as well.
     fn work_json(&self) -> Value {
         let [boundary, sources] = self.watch.work;

@@ -41,13 +41,17 @@ impl Report {
         if let Some((first, last)) = first.angular_momentum.zip(last.angular_momentum) {
             rows.push(row("angular momentum", format!("{first:.6e} -> {last:.6e} kg m/s")));
         }
+        if let Some(rest) = self.not_restored.filter(|rest| *rest > 0.0) {
+            rows.push(row("  not restored", format!("{rest:.6e} kg m/s: the steps had not lost the energy for it")));
+        }
         match &self.balance {
             Some(balance) => rows.extend(balance_rows(balance)),
             None => rows.extend(work_rows([self.watch.work[0], self.watch.work[1], self.watch.contact_work])),
         }
-        if let Some(DeepestOverlap { depth, share, x: [x, y] }) = self.overlap {
+        for (name, deepest) in [("deepest overlap", self.overlap), ("deepest in an obstacle", self.in_obstacle)] {
+            let Some(DeepestOverlap { depth, share, x: [x, y] }) = deepest else { continue };
             let at = if share > 0.0 { format!(", at ({x:.4}, {y:.4})") } else { String::new() };
-            rows.push(row("deepest overlap", format!("{depth:.3e} m, {:.1} % of a cell{at}", 100.0 * share)));
+            rows.push(row(name, format!("{depth:.3e} m, {:.1} % of a cell{at}", 100.0 * share)));
         }
         rows.extend(self.treated.iter().flat_map(|treated| treated.rows()));
         let made = self.watch.made;

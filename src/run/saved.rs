@@ -25,9 +25,14 @@ impl Report {
         to.flag(self.treated.is_some());
         self.treated.iter().for_each(|treated| treated.save(to));
         to.flag(self.overlap.is_some());
-        self.overlap.iter().for_each(|DeepestOverlap { depth, share, x }| {
-            to.real(*depth).real(*share).real(x[0]).real(x[1]);
-        });
+        self.overlap.iter().for_each(|deepest| save_overlap(deepest, to));
+        to.flag(self.in_obstacle.is_some());
+        self.in_obstacle.iter().for_each(|deepest| save_overlap(deepest, to));
+        to.flag(self.not_restored.is_some()).real(self.not_restored.unwrap_or(0.0));
+        to.count(self.ends.len());
+        for (step, end) in &self.ends {
+            to.count(*step).real(*end);
+        }
     }
 
     /// The figures of a run that goes on under a watch with these limits.
@@ -50,8 +55,18 @@ impl Report {
         out.watch = Watch::restored(from, limits)?;
         out.treated = if from.flag()? { Some(Treated::restored(from)?) } else { None };
         out.overlap = if from.flag()? { Some(restored_overlap(from)?) } else { None };
+        out.in_obstacle = if from.flag()? { Some(restored_overlap(from)?) } else { None };
+        let (is_known, not_restored) = (from.flag()?, from.real()?);
+        out.not_restored = is_known.then_some(not_restored);
+        for _ in 0..from.count()? {
+            out.ends.push((from.count()?, from.real()?));
+        }
         Ok(out)
     }
+}
+
+fn save_overlap(DeepestOverlap { depth, share, x }: &DeepestOverlap, to: &mut Words) {
+    to.real(*depth).real(*share).real(x[0]).real(x[1]);
 }
 
 fn restored_overlap(from: &mut Saved) -> Result<DeepestOverlap> {

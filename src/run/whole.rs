@@ -2,8 +2,8 @@
 
 use super::Folder;
 use crate::error::{Error, Result};
-use crate::io::own;
 use crate::io::seal::{self, Seal};
+use crate::io::{checkpoint, own};
 use serde_json::Value;
 use std::path::Path;
 
@@ -22,6 +22,8 @@ pub struct Whole {
     pub faults: Vec<String>,
     /// What `summary.json` says; null where it is not there.
     pub summary: Value,
+    /// The names of the checkpoints that the run has kept.
+    checkpoints: Vec<String>,
 }
 
 impl Whole {
@@ -42,6 +44,7 @@ impl Whole {
         let text = std::fs::read_to_string(folder.summary()).unwrap_or_default();
         let mut out = Self { summary: serde_json::from_str(&text).unwrap_or(Value::Null), ..Self::default() };
         let list = own::hashes(&folder.root);
+        out.checkpoints = checkpoint::kept(list.keys().map(String::as_str));
         for (name, hash) in &list {
             out.file(folder, name, hash.as_deref());
         }
@@ -64,9 +67,12 @@ impl Whole {
         let bytes = match std::fs::read(&path) {
             Ok(bytes) => bytes,
             Err(_) if !path.exists() => {
-                // The run itself removes all but its last checkpoints; one that was killed or found no space has not made all that it began.
+                // The run itself removes all but its last checkpoints; a run that was killed or found no space has not made all that it began.
                 let ended = ["done", "interrupted"].iter().any(|status| self.summary["status"] == *status);
                 match name.starts_with("checkpoints/") {
+                    true if self.checkpoints.iter().any(|kept| kept == name) && (ended || hash.is_some()) => {
+                        self.faults.push(format!("{name} is missing: `dgmpm resume` could not go on from it"));
+                    }
                     true => {}
                     false if ended || hash.is_some() => self.faults.push(format!("{name} is missing")),
                     false => self.unmade.push(name.to_owned()),
@@ -78,6 +84,7 @@ impl Whole {
         let is_h5 = name.ends_with(".h5");
         let seal = if is_h5 { seal::check(&path).unwrap_or(Seal::None) } else { seal::check_text(&bytes) };
         match (seal, hash) {
+            (Seal::Whole, Some(hash)) if !holds(&bytes, hash) => self.faults.push(other(name)),
             (Seal::Whole, _) => self.sealed += 1,
             (Seal::Broken, _) => self.faults.push(damaged(name)),
             (Seal::None, Some(hash)) if blake3::hash(&bytes).to_hex().as_str() == hash => self.hashed += 1,
@@ -102,6 +109,15 @@ impl Whole {
             self.faults.push(what);
         }
     }
+}
+
+/// Whether a whole file has this hash in its seal.
+fn holds(bytes: &[u8], hash: &str) -> bool {
+    seal::hash_in(bytes).is_some_and(|own| own.to_hex().as_str() == hash)
+}
+
+fn other(name: &str) -> String {
+    format!("{name} is whole, but another file than the one that was written under this name")
 }
 
 fn damaged(name: &str) -> String {

@@ -66,7 +66,7 @@ pub(super) const LAYOUT: Parameter = key(
     "",
     Form::Name(|| LAYOUTS.names(), &[]),
     Preset::Absent(
-        "`\"paper\"`; from degree 3 on `\"midpoints\"`; for laws with internal variables, and in scenes with contact or obstacles, `\"gauss\"`",
+        "`\"paper\"`; from degree 3 on `\"midpoints\"`; for laws with internal variables, and in scenes with contact, obstacles or unilateral walls, `\"gauss\"`",
     ),
 );
 
@@ -188,7 +188,7 @@ pub(super) const SCHEME: &[Parameter] = &[
     ),
     key(
         "angular_momentum",
-        "whether each body keeps its angular momentum to rounding: after each step it turns as little as that takes; not with a [[source]]",
+        "whether each body keeps its angular momentum to rounding: after each step it turns as little as that takes; not with a [[source]], and not at degree 0",
         "",
         Form::Boolean,
         Preset::Boolean(false),

@@ -10,6 +10,10 @@
 //! Of all changes of p it is the one with the least kinetic energy that leaves momentum and gives this angular momentum (two Lagrange
 //! multipliers: Lee, Gil, Bonet, Comput. Struct. 118, 2013, who keep both in each step by such a projection). x_n are the positions at the
 //! start of the step, in which contact without friction has no torque on a pair: what one body gets the other one gives.
+//!
+//! The turning gives back energy that fluxes have lost. A limiter, or a body of few cells, may take less energy than the turning would
+//! give back: then all bodies turn by the share of omega whose energy the step has lost, and what is left is counted
+//! ([`Work::take_not_restored`]).
 
 use super::block::Block;
 use super::outside::Torques;
@@ -19,7 +23,8 @@ use crate::lane::{F8, LANES, ticks};
 use crate::mesh::{FACES, map};
 use crate::operators::{Neighbour, Operators};
 use crate::state::{State, UNKNOWNS};
-use crate::tensor::DEFORMATION;
+use crate::sum::{ExactSum, exact_sum};
+use crate::tensor::{DEFORMATION, cross, minus};
 
 /// The bodies of a mesh: the block and the lane of each of their cells, in the order of the mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,7 +69,6 @@ impl Bodies {
 }
 
 /// What the motion of a body adds up to.
-#[derive(Default)]
 struct Sums {
     mass: f64,
     /// int rho0 x.
@@ -79,13 +83,22 @@ struct Sums {
     change: f64,
 }
 
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
+/// How many numbers [`Sums`] has.
+const SUMS: usize = 8;
+
+/// How a body has to turn so that it keeps its angular momentum.
+struct Turn {
+    centre: [f64; 2],
+    /// omega, a change of the angle's rate, 1/s.
+    turn: f64,
+    /// int rho0 |x - x_c|^2.
+    inertia: f64,
+    /// int (x - x_c) cross p before it turns.
+    spin: f64,
 }
 
-fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] - b[0], a[1] - b[1]]
-}
+/// The energy of a body that rounding may take for made in a step, over that energy.
+const ROUNDING: f64 = 1e-14;
 
 impl Scheme {
     /// With angular momentum that each body keeps. States must have the displacement, and steps must meter forces.
@@ -139,28 +152,61 @@ impl Block<'_> {
 }
 
 impl Work {
-    /// Turns each body of the new state so that its angular momentum has changed by the torque from outside, cells in a fixed order. `before`: the state
-    /// that the step began with. Nothing where the scheme does not ask for it.
+    /// Turns each body of the new state so that its angular momentum has changed by the torque from outside, as far as the step has lost the
+    /// energy that this takes. `before`: the state that the step began with. Nothing where the scheme does not ask for it.
     pub(super) fn keep_angular_momentum(&mut self, scheme: &Scheme, before: &State) {
         let Some(bodies) = &scheme.bodies else { return };
         let start = ticks();
         let between = self.torque_without_reaction(scheme, bodies);
-        self.turning_loss = 0.0;
-        for (body, between) in bodies.cells.iter().zip(between) {
+        let turn_of = |(body, between): (&Vec<[usize; 2]>, f64)| {
             let sums = self.sums_of(scheme, before, body);
             let centre = sums.first.map(|x| x / sums.mass);
             let inertia = sums.second - sums.mass * (centre[0] * centre[0] + centre[1] * centre[1]);
             let turn = (self.torque_on(scheme, body) - between - sums.change) / inertia;
-            // A body that is lost turns no more.
-            if !turn.is_finite() {
-                continue;
-            }
-            self.turn(scheme, body, centre, turn);
             let spin = sums.angular - cross(centre, sums.momentum);
-            self.turning_loss -= turn * (spin + 0.5 * turn * inertia);
+            // A body that is lost turns no more.
+            let turn = if turn.is_finite() { turn } else { 0.0 };
+            Turn { centre, turn, inertia, spin }
+        };
+        let turns: Vec<Turn> = bodies.cells.iter().zip(between).map(turn_of).collect();
+        let share = self.share_that_is_paid(scheme, before, &turns);
+        self.turning_loss = -energy_of(&turns, share);
+        for (body, Turn { centre, turn, inertia, .. }) in bodies.cells.iter().zip(&turns) {
+            self.turn(scheme, body, *centre, share * turn);
+            self.not_restored += (1.0 - share) * (turn * inertia).abs();
         }
         let scratch = self.scratch[0].get_mut().unwrap_or_else(|poisoned| poisoned.into_inner());
         scratch.phases.add_both(Phase::Corrections, Part::AngularMomentum, ticks().wrapping_sub(start));
+    }
+
+    /// The share of the turns whose energy is no more than what the step has lost before them: 1 but where few cells or a limiter have
+    /// taken much angular momentum and little energy.
+    fn share_that_is_paid(&mut self, scheme: &Scheme, before: &State, turns: &[Turn]) -> f64 {
+        let made = energy_of(turns, 1.0);
+        if made <= 0.0 {
+            return 1.0;
+        }
+        let mut cells = vec![];
+        let next = std::mem::take(&mut self.next);
+        let [had, has] =
+            [before, &next].map(|state| scheme.energy(state, self, &mut cells) + self.stored_in_contact(scheme, state));
+        self.next = next;
+        let [boundary, sources, _] = self.external_work(scheme);
+        let lost = (had + boundary + sources - has).max(0.0) + ROUNDING * had;
+        if made <= lost {
+            return 1.0;
+        }
+        // a share + b share^2 = lost.
+        let b = exact_sum(turns.iter().map(|own| 0.5 * own.turn * own.turn * own.inertia));
+        let a = made - b;
+        let root = (a * a + 4.0 * b * lost).sqrt();
+        // Without cancellation for either sign of a.
+        (if a > 0.0 { 2.0 * lost / (a + root) } else { (root - a) / (2.0 * b) }).clamp(0.0, 1.0)
+    }
+
+    /// The angular momentum that bodies were not given back since the last call, as its energy was not lost, kg m/s.
+    pub fn take_not_restored(&mut self) -> f64 {
+        std::mem::take(&mut self.not_restored)
     }
 
     /// The part of each body in what the torques of contact on bodies that touch sum up to, N m s/m: friction between sides that do not quite
@@ -182,6 +228,7 @@ impl Work {
             let [a, b] = segment.faces.map(|face| set[body(face)]);
             set.iter_mut().filter(|set| **set == a.max(b)).for_each(|set| *set = a.min(b));
         }
+        // In the order of the mesh, which does not depend on the blocks.
         for (number, face) in contacts.faces.iter().enumerate() {
             let entry = self.outside.first[face.face / FACES] as usize;
             out[body(number)] += torques[entry][face.face % FACES].0[face.lane];
@@ -205,22 +252,34 @@ impl Work {
             Neighbour::Boundary(_) => torques[self.outside.first[block] as usize][face].0[lane],
             _ => 0.0,
         };
-        body.iter().map(|&[block, lane]| (0..FACES).map(|face| of_face(block, face, lane)).sum::<f64>()).sum()
+        let all = |&[block, lane]: &[usize; 2]| (0..FACES).map(move |face| [block, face, lane]);
+        exact_sum(body.iter().flat_map(all).map(|[block, face, lane]| of_face(block, face, lane)))
     }
 
     fn sums_of(&self, scheme: &Scheme, before: &State, body: &[[usize; 2]]) -> Sums {
-        let mut sums = Sums::default();
-        each_node(scheme, body, |[block, lane], a, x, mass, density| {
-            let [[p0, u0], [p1, u1]] = [before, &self.next].map(|state| at_node(scheme, state, [block, lane], a));
-            let at = [x[0] + u1[0], x[1] + u1[1]];
-            sums.mass += mass * density;
-            sums.second += mass * density * (at[0] * at[0] + at[1] * at[1]);
-            (0..2).for_each(|k| sums.first[k] += mass * density * at[k]);
-            (0..2).for_each(|k| sums.momentum[k] += mass * p1[k]);
-            sums.angular += mass * cross(at, p1);
-            sums.change += mass * (cross(at, minus(p1, p0)) + cross(minus(u1, u0), p0));
-        });
-        sums
+        let mut sums: [ExactSum; SUMS] = Default::default();
+        for cell in body {
+            let mut own = [0.0; SUMS];
+            each_node(scheme, &[*cell], |place, a, x, mass, density| {
+                let [[p0, u0], [p1, u1]] = [before, &self.next].map(|state| at_node(scheme, state, place, a));
+                let at = [x[0] + u1[0], x[1] + u1[1]];
+                let heavy = mass * density;
+                let new = [
+                    heavy,
+                    heavy * at[0],
+                    heavy * at[1],
+                    heavy * (at[0] * at[0] + at[1] * at[1]),
+                    mass * p1[0],
+                    mass * p1[1],
+                    mass * cross(at, p1),
+                    mass * (cross(at, minus(p1, p0)) + cross(minus(u1, u0), p0)),
+                ];
+                own.iter_mut().zip(new).for_each(|(own, new)| *own += new);
+            });
+            sums.iter_mut().zip(own).for_each(|(sum, own)| sum.add(own));
+        }
+        let [mass, x, y, second, one, two, angular, change] = sums.map(|sum| sum.value());
+        Sums { mass, first: [x, y], second, momentum: [one, two], angular, change }
     }
 
     /// p += rho0 turn E (x - centre).
@@ -235,6 +294,12 @@ impl Work {
             next.u[first + n].0[lane] += density * turn * from[0];
         });
     }
+}
+
+/// The energy that a share of these turns gives to the bodies, J/m.
+fn energy_of(turns: &[Turn], share: f64) -> f64 {
+    let of = |Turn { turn, inertia, spin, .. }: &Turn| share * turn * (spin + 0.5 * share * turn * inertia);
+    exact_sum(turns.iter().map(of))
 }
 
 /// p and u at a node.

@@ -64,6 +64,14 @@ impl BoundaryMemory {
         numbers.get(first..first + count as usize).unwrap_or_default()
     }
 
+    /// Those of all points of a face among all.
+    pub fn look_at_face<'a>(&self, numbers: &'a [f64], [block, face, lane]: [usize; 3], points: usize) -> &'a [f64] {
+        let Some(faces) = self.faces.get(block) else { return &[] };
+        let (first, count) = faces[face][lane];
+        let first = self.first[block] + first as usize;
+        numbers.get(first..first + count as usize * points).unwrap_or_default()
+    }
+
     /// Those of a point among the numbers of its block.
     #[inline]
     pub fn of_point<'a>(&self, numbers: &'a mut [f64], [block, face, lane, point]: [usize; 4]) -> &'a mut [f64] {

@@ -38,23 +38,14 @@ impl Block<'_> {
         let line = &self.scheme.operators.line;
         let memory = self.scheme.boundary_memory.of_point(memory, [self.number, face, lane, point]);
         let (mut force, mut push) = ([0.0; 2], [0.0; 2]);
-        for &(segment, side) in met_by {
-            let segment = &met.meetings.segments[segment];
-            let law = contacts.law(segment.pairing);
-            // The points of a cut are those of the faces: `share` is 0 but at one, whose memory this is.
-            for at in &segment.points[..line.m] {
-                let share = at.values[side][point];
-                if share == 0.0 {
-                    continue;
-                }
-                let sides = [0, 1].map(|k| self.side(segment, at, k, met.traces, own.len()));
-                let (gap, step, dt) = (at.gap, self.stage.dt, self.factor());
-                let (normal, overlap, length) = (segment.normal, segment.overlap(at), segment.length);
-                let meeting = Meeting { sides, normal, gap, overlap, length, step, dt };
-                let (t, pressure) = (law.traction(&meeting, memory), law.push(&meeting));
-                let weight = if side == 0 { at.weight * share } else { -at.weight * share };
-                (0..2).for_each(|i| force[i] += weight * t[i]);
-                (0..2).for_each(|i| push[i] -= weight * pressure * normal[i]);
+        let mut shares = vec![];
+        for &(number, side) in met_by {
+            let segment = &met.meetings.segments[number];
+            let [t, q] = self.force_of_segment(met, (segment, side), point, own.len(), memory);
+            (0..2).for_each(|i| force[i] += t[i]);
+            (0..2).for_each(|i| push[i] += q[i]);
+            if met.meetings.received.is_some() {
+                shares.push((number, side, [0, 1].map(|i| t[i] + q[i])));
             }
         }
         let at = self.face_point(face, point, lane);
@@ -66,7 +57,41 @@ impl Block<'_> {
         let inside = Trace { f, v: [x(4), x(5)], t: [x(6), x(7)], c: self.law().speeds(f, at.normal) };
         let dv = at.characteristic(&inside).solve([t[0] - inside.t[0], t[1] - inside.t[1]]);
         let v = [inside.v[0] + dv[0], inside.v[1] + dv[1]];
+        if let Some(received) = &met.meetings.received {
+            shares.into_iter().for_each(|(segment, side, share)| received[segment][side].add(share, v, self.factor()));
+        }
         Some(star(v, [t[0] + push[0], t[1] + push[1]], at.normal))
+    }
+
+    /// The force of a segment at a point of a face, the side of it of this number, N/m: of the traction, and of the push of overlaps. `width`:
+    /// numbers of the traces of a face.
+    fn force_of_segment(
+        &self,
+        met: Met,
+        (segment, side): (&Segment, usize),
+        point: usize,
+        width: usize,
+        memory: &mut [f64],
+    ) -> [[f64; 2]; 2] {
+        let (mut force, mut push) = ([0.0; 2], [0.0; 2]);
+        let Some(contacts) = &self.scheme.contacts else { return [force, push] };
+        let law = contacts.law(segment.pairing);
+        // The points of a cut are those of the faces: `share` is 0 but at one, whose memory this is.
+        for at in &segment.points[..self.scheme.operators.line.m] {
+            let share = at.values[side][point];
+            if share == 0.0 {
+                continue;
+            }
+            let sides = [0, 1].map(|k| self.side(segment, at, k, met.traces, width));
+            let (gap, step, dt) = (at.gap, self.stage.dt, self.factor());
+            let (normal, overlap, length) = (segment.normal, segment.overlap(at), segment.length);
+            let meeting = Meeting { sides, normal, gap, overlap, length, step, dt };
+            let (t, pressure) = (law.traction(&meeting, memory), law.push(&meeting));
+            let weight = if side == 0 { at.weight * share } else { -at.weight * share };
+            (0..2).for_each(|i| force[i] += weight * t[i]);
+            (0..2).for_each(|i| push[i] -= weight * pressure * normal[i]);
+        }
+        [force, push]
     }
 
     /// What a side of a segment shows at a point of it.

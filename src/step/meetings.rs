@@ -11,6 +11,7 @@
 //! So the sum of the forces of both sides is 0 to rounding. Since sum_g w_g l_i l_j over a part of a face is never more than the mass
 //! matrix W_i of the whole face, the face points take no more energy than the points of the segment lose.
 
+use super::received::ReceivedBySide;
 use super::segments::{
     Chord, DeepestOverlap, Face, MOST, OVERLAP, Point, REACH, SHORTEST, Segment, along, on_face, shared, whole,
 };
@@ -128,6 +129,11 @@ impl Contacts {
         cuts
     }
 
+    /// How many pairings there are.
+    pub fn len(&self) -> usize {
+        self.pairings.len()
+    }
+
     /// Whether each face of the pairings of cuts has its other side; else the first that has none.
     pub fn without_partner(&self) -> Option<[[f64; 2]; 2]> {
         let mut has = vec![false; self.faces.len()];
@@ -143,6 +149,11 @@ impl Scheme {
         let mut meetings = Meetings::new(self)?;
         meetings.find(self, state);
         Some(meetings.deepest)
+    }
+
+    /// The boundary groups of each pairing, by number: of the first and of the second side.
+    pub fn pairs(&self) -> Vec<[usize; 2]> {
+        self.contacts.iter().flat_map(|contacts| contacts.pairings.iter().map(|(pairing, _)| pairing.groups)).collect()
     }
 
     /// By pairing of boundary groups, the cells whose faces may act on each other.
@@ -166,6 +177,8 @@ pub(super) struct Meetings {
     /// Current positions of the points of each face, and of its ends.
     points: Vec<[[f64; 2]; MOST]>,
     ends: Vec<[[f64; 2]; 2]>,
+    /// What each side of a segment receives in the step; none where nobody asks for it.
+    pub received: Option<Vec<[ReceivedBySide; 2]>>,
     /// The deepest overlap so far.
     pub deepest: DeepestOverlap,
     /// Pairs that may meet, and the positions of the ends when they were found.
@@ -191,6 +204,7 @@ impl Meetings {
             + size_of_val(&self.points[..])
             + 2 * size_of_val(&self.ends[..])
             + size_of_val(&self.candidates[..])
+            + self.received.as_ref().map_or(0, |received| size_of_val(&received[..]))
     }
 
     /// Finds where the faces meet in `state`.
@@ -226,6 +240,10 @@ impl Meetings {
                 (0..2).for_each(|side| self.of_face[faces[side]].push((self.segments.len(), side)));
                 self.segments.push(segment);
             }
+        }
+        if let Some(received) = &mut self.received {
+            received.clear();
+            received.resize_with(self.segments.len(), Default::default);
         }
     }
 

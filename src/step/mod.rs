@@ -36,10 +36,12 @@ mod loss;
 mod meeting_flux;
 mod meetings;
 mod motion;
+mod obstacles;
 mod outside;
 pub mod phase;
 mod predictor;
 mod ranks;
+mod received;
 mod rescue;
 mod rotation;
 mod runge_kutta;
@@ -101,10 +103,14 @@ pub struct Work {
     balance: Option<Vec<balance::BlockBalance>>,
     /// What the turning of bodies has taken of their energy in the step, J/m; see [`Scheme::keeping_angular_momentum`].
     turning_loss: f64,
+    /// The angular momentum that was not restored since the last report of it, kg m/s.
+    not_restored: f64,
     /// The memory of corrections and rescue; none where there are none.
     corrections: Option<Box<correction::Memory>>,
     /// Where faces meet in the step; none where no condition pairs any.
     meetings: Option<Box<meetings::Meetings>>,
+    /// Faces under obstacles; none where no condition is one.
+    obstacles: Option<Box<obstacles::Obstacles>>,
     /// One a thread.
     scratch: Vec<Mutex<Scratch>>,
     /// The clock of the phases.
@@ -139,8 +145,10 @@ impl Work {
             outside: outside::Outside::new(scheme),
             balance: None,
             turning_loss: 0.0,
+            not_restored: 0.0,
             corrections: correction::Memory::new(scheme, state),
             meetings: meetings::Meetings::new(scheme),
+            obstacles: obstacles::Obstacles::new(scheme).filter(|_| built::OBSTACLES),
             scratch: (0..rayon::current_num_threads().max(1)).map(|_| scratch()).collect(),
             rate: phase::Rate::start(),
         }
@@ -179,6 +187,11 @@ impl Work {
         self.meetings.as_ref().map(|meetings| meetings.deepest)
     }
 
+    /// Where a body was deepest in an obstacle at the start of a step so far; none where no condition is an obstacle.
+    pub fn in_obstacle(&self) -> Option<DeepestOverlap> {
+        self.obstacles.as_ref().map(|obstacles| obstacles.deepest)
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let numbers = self.next.u.len() + self.next.internal.len() + 2 * self.speed.len() + self.tiles.numbers();
@@ -187,6 +200,7 @@ impl Work {
             + self.balance.as_ref().map_or(0, |blocks| size_of_val(&blocks[..]))
             + self.corrections.as_ref().map_or(0, |memory| memory.bytes())
             + self.meetings.as_ref().map_or(0, |meetings| meetings.bytes())
+            + self.obstacles.as_ref().map_or(0, |obstacles| obstacles.bytes())
     }
 }
 
@@ -218,6 +232,8 @@ pub(crate) struct Stage<'a> {
     pub dt: f64,
     /// From t_n to a Runge-Kutta stage, c_i dt, s; 0 for ADER, whose time nodes have their own.
     pub elapsed: f64,
+    /// Faces under obstacles at the start of the step; none where no condition is one.
+    obstacles: Option<&'a obstacles::Obstacles>,
 }
 
 /// Runs `body` with the scratch of the current thread. Uncontended: a thread holds one block at a time.
@@ -240,13 +256,19 @@ impl Scheme {
         if let (true, Some(meetings)) = (built::CONTACT, &mut work.meetings) {
             meetings.find(self, state);
         }
+        // Out of the memory that the blocks write while they read it.
+        let mut own = work.obstacles.take();
+        if let Some(obstacles) = &mut own {
+            obstacles.look(self, state);
+        }
+        let obstacles = own.as_deref();
         match &self.method {
             Method::Ader { time: basis, .. } => {
                 let node = |(tau, weight): (&f64, &f64)| TimeNode { time: state.time + tau * dt, weight: *weight };
                 // At most 7 nodes: on the stack, no allocation in a step.
                 let mut times = [TimeNode { time: 0.0, weight: 0.0 }; 8];
                 times.iter_mut().zip(basis.tau.iter().zip(&basis.weights)).for_each(|(t, n)| *t = node(n));
-                let stage = Stage { number: 0, times: &times[..basis.len()], row: &[], dt, elapsed: 0.0 };
+                let stage = Stage { number: 0, times: &times[..basis.len()], row: &[], dt, elapsed: 0.0, obstacles };
                 self.on_all_blocks(&[stage], (state, survey), work, begin, finish);
             }
             Method::RungeKutta(tableau) => {
@@ -258,11 +280,12 @@ impl Scheme {
                 let row = |number: usize| rows.get(number).map_or(&[][..], |row| &row[..]);
                 let stages: [Stage; MOST_STAGES] = std::array::from_fn(|number| {
                     let elapsed = tableau.c.get(number).map_or(0.0, |c| c * dt);
-                    Stage { number, times: &times[number], row: row(number), dt, elapsed }
+                    Stage { number, times: &times[number], row: row(number), dt, elapsed, obstacles }
                 });
                 self.on_all_blocks(&stages[..tableau.stages()], (state, survey), work, begin, finish);
             }
         }
+        work.obstacles = own;
         work.next.time = time;
         work.next.step = state.step + 1;
         if work.is_shared() {

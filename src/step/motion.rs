@@ -49,10 +49,10 @@ impl Motion {
         self
     }
 
-    /// The same with a meter of the forces at each boundary group: [`State::received`] goes on from what the state has, or begins at 0.
+    /// The same with a meter of the forces at each boundary group and of each contact pair: [`State::received`] goes on from what the state has, or begins at 0.
     pub fn with_forces(mut self, scheme: &Scheme) -> Self {
         self.work = self.work.with_forces();
-        self.state.received.resize(scheme.boundaries.len(), Received::default());
+        self.state.received.resize(scheme.receivers(), Received::default());
         self
     }
 

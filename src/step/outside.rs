@@ -108,6 +108,9 @@ impl Work {
     pub fn with_forces(mut self) -> Self {
         self.outside.forces = Some(vec![FaceForces::default(); self.outside.entries.len()]);
         self.outside.sums = vec![Default::default(); self.next.received.len()];
+        if let Some(meetings) = &mut self.meetings {
+            meetings.received = Some(vec![]);
+        }
         self
     }
 
@@ -142,5 +145,35 @@ impl Work {
         };
         self.next.received.clear();
         self.next.received.extend(before.iter().zip(sums.iter()).map(received));
+        self.receive_from_pairs(scheme.boundaries.len());
+    }
+}
+
+impl Scheme {
+    /// How many entries [`crate::state::State::received`] has: the boundary groups, then both sides of each pair of [`Scheme::pairs`], what
+    /// the first receives from the second and the second from the first.
+    pub fn receivers(&self) -> usize {
+        self.boundaries.len() + 2 * self.contacts.as_ref().map_or(0, |contacts| contacts.len())
+    }
+}
+
+impl Work {
+    /// Adds what pairs gave to each other in the last step to the entries behind the `groups` of the new state, by exact sums over segments.
+    pub(super) fn receive_from_pairs(&mut self, groups: usize) {
+        let Some(meetings) = self.meetings.as_deref() else { return };
+        let (segments, Some(received)) = (&meetings.segments, &meetings.received) else { return };
+        let into = self.next.received.get_mut(groups..).unwrap_or_default();
+        for (pairing, into) in into.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+            let own = || segments.iter().zip(received).filter(|(segment, _)| segment.pairing == pairing);
+            for (side, Received { impulse, work }) in into.iter_mut().enumerate() {
+                let mut sums: [ExactSum; 3] = Default::default();
+                for (_, received) in own() {
+                    sums.iter_mut().zip(received[side].values()).for_each(|(sum, value)| sum.add(value));
+                }
+                let [one, two, more] = sums.map(|sum| sum.value());
+                *impulse = [impulse[0] + one, impulse[1] + two];
+                *work += more;
+            }
+        }
     }
 }

@@ -9,7 +9,9 @@
 
 use super::balance::BlockBalance;
 use super::loss::FacePoint;
+use super::obstacles;
 use super::outside::{ExternalWork, FaceForces, Torques};
+use super::received::ReceivedBySide;
 use super::tile_memory::Tiles;
 use super::tiles::{Plan, Slot};
 use super::worst::Worst;
@@ -160,6 +162,23 @@ impl Ranks {
         }
     }
 
+    /// Gives all ranks what the sides of segments have received: each side on the rank of its cell, 0 elsewhere.
+    fn add_up(&mut self, received: &mut [[ReceivedBySide; 2]]) {
+        let (rank, count) = (self.exchange.rank(), 6 * received.len());
+        self.all.clear();
+        self.all.resize(self.exchange.ranks() * count, 0.0);
+        for (to, side) in self.all[rank * count..].chunks_exact_mut(3).zip(received.iter().flatten()) {
+            to.copy_from_slice(&side.values());
+        }
+        let ends: Vec<usize> = (0..=self.exchange.ranks()).map(|rank| rank * count).collect();
+        self.exchange.gather(&mut self.all, &ends);
+        for (number, side) in received.iter_mut().flatten().enumerate() {
+            let of = |rank: usize, k: usize| self.all[rank * count + 3 * number + k];
+            let sum = |k: usize| (0..self.exchange.ranks()).map(|rank| of(rank, k)).sum();
+            *side = ReceivedBySide::of([0, 1, 2].map(sum));
+        }
+    }
+
     /// The worst of the blocks of all ranks, from that of its own.
     pub fn worst(&mut self, own: Worst) -> Worst {
         let (rank, ranks) = (self.exchange.rank(), self.exchange.ranks());
@@ -265,7 +284,7 @@ impl Work {
 
     /// Gives all ranks what each of them has metered in a step; all of the new state where the scheme looks at it in each step.
     pub(super) fn share(&mut self, scheme: &Scheme) {
-        let Work { tiles: Tiles { ranks, .. }, outside, balance, .. } = self;
+        let Work { tiles: Tiles { ranks, .. }, outside, balance, meetings, .. } = self;
         let Some(ranks) = ranks else { return };
         ranks.whole = false;
         let entry = |block: usize| outside.first[block] as usize;
@@ -278,6 +297,9 @@ impl Work {
         }
         if let Some(balance) = balance {
             ranks.gather(balance, |block| block);
+        }
+        if let Some(received) = meetings.as_deref_mut().and_then(|meetings| meetings.received.as_mut()) {
+            ranks.add_up(received);
         }
         if scheme.looks_at_all() {
             self.fetch(scheme);
@@ -331,7 +353,8 @@ impl Ranks {
 impl Scheme {
     /// Whether something of each step looks at the whole body.
     fn looks_at_all(&self) -> bool {
-        !self.corrections.is_empty() || self.rescue.is_some() || self.contacts.is_some() || self.bodies.is_some()
+        let looks = !self.corrections.is_empty() || self.rescue.is_some();
+        looks || self.contacts.is_some() || self.bodies.is_some() || obstacles::Obstacles::is_asked_for(self)
     }
 }
 

@@ -39,7 +39,8 @@ impl Block<'_> {
         let inside: Vec<_> = points.iter().zip(own.chunks_exact(width)).map(of).collect();
         let corners = scheme.operators.geometry.corners_of(self.number, lane);
         let ends = [0.0, 1.0].map(|s| map::position(&corners, on_face(face, s)));
-        let whole = WholeFace { ends, points: &points, inside: &inside, basis: &line.basis };
+        let beyond = self.stage.obstacles.map_or([None; 2], |all| all.beyond([self.number, face, lane]));
+        let whole = WholeFace { ends, points: &points, inside: &inside, basis: &line.basis, beyond };
         let when = Moment { times: self.stage.times, dt: self.factor() };
         let memory = scheme.boundary_memory.of_face(memory, [self.number, face, lane], line.m);
         let mut flux = [[0.0; UNKNOWNS]; MOST];

@@ -13,7 +13,7 @@ mod probe;
 
 pub use energy::Energies;
 pub use extreme::Extremes;
-pub use force::Forces;
+pub use force::{Forces, Giver};
 pub use length::Lengths;
 pub use probe::Probe;
 

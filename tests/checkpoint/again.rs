@@ -21,6 +21,8 @@ fn the_same_command_begins_goes_on_and_ends() {
     let said = bench.run(command);
     assert!(said.contains("r has this run, done at 1.2"), "{said}");
     assert_same("done", &bench.path("whole"), &bench.path("r"));
+    let said = bench.run(&format!("{command} --set time.end=6e-5"));
+    assert!(said.contains("later than the end 6.0") && said.contains("nothing is done"), "{said}");
     // Killed behind the checkpoint of the end, and before the last rows.
     let ledger = bench.path("r/ledger.csv");
     let rows = fs::read_to_string(&ledger).unwrap();

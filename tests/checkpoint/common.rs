@@ -87,11 +87,12 @@ pub fn results(root: &Path) -> BTreeMap<String, Vec<u8>> {
     out
 }
 
-/// Without seconds, memory and threads.
+/// Without seconds, memory, threads, and the ends that a run had on its way to the last.
 fn without_clocks(text: &[u8]) -> Vec<u8> {
     let all: serde_json::Value = serde_json::from_slice(text).unwrap();
-    let clock =
-        |key: &str| ["second", "phases", "memory", "threads", "effects", "bytes"].iter().any(|word| key.contains(word));
+    let clock = |key: &str| {
+        ["second", "phases", "memory", "threads", "effects", "bytes", "ends"].iter().any(|word| key.contains(word))
+    };
     let kept = all.as_object().unwrap().iter().filter(|(key, _)| !clock(key));
     kept.map(|(key, value)| format!("{key}: {value}\n")).collect::<String>().into_bytes()
 }

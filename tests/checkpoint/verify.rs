@@ -1,8 +1,8 @@
 //! `dgmpm verify`: damage in each kind of file, other bits, and where results say that they come from.
 
 use crate::common::{Bench, copy, flip};
-use dgmpm::parts::io::own;
 use dgmpm::parts::io::snapshot::{self, Snapshot};
+use dgmpm::parts::io::{checkpoint, own};
 use std::collections::BTreeMap;
 use std::fs;
 
@@ -25,7 +25,9 @@ fn the_first_steps_of_a_whole_run_have_the_same_bits_and_its_files_say_where_the
     // The ledger that every run has, of each tenth step.
     bench.run("run case.toml --out plain --set output=[] --set quantity=[]");
     let said = bench.run("verify plain");
-    assert!(said.contains(" 1 row of tables"), "{said}");
+    assert!(said.contains("11 steps done again") && said.contains(" 2 rows (1 of the start) of tables"), "{said}");
+    let said = bench.run("verify plain --steps 3");
+    assert!(said.contains("\n3 steps done again") || said.starts_with("3 steps done again"), "{said}");
     let said = bench.run("verify r --steps 1000");
     assert!(said.contains("0 files") && !said.contains(" 0 rows") && !said.contains(" 0 snapshots"), "{said}");
     let summary: serde_json::Value = serde_json::from_slice(&fs::read(bench.path("r/summary.json")).unwrap()).unwrap();
@@ -81,6 +83,67 @@ fn a_flipped_byte_a_missing_file_and_a_torn_row_are_found_in_each_kind_of_file()
     fs::write(&ledger, fs::read_to_string(&ledger).unwrap() + "7e0,1e").unwrap();
     let message = bench.fail(6, "verify r --steps 0");
     assert!(message.contains("ledger.csv has a row that is not whole"), "{message}");
+}
+
+#[test]
+fn a_whole_file_under_the_name_of_another_is_found_with_and_without_the_hashes_of_the_list() {
+    let bench = Bench::new();
+    bench.run("run case.toml --out r");
+    bench.run("run case.toml --out s --set material.0.density=7900 --set scheme.degree=1");
+    let list = fs::read_to_string(bench.path("r/.dgmpm")).unwrap();
+    let names: String = list.lines().map(|line| line.split('\t').next().unwrap().to_owned() + "\n").collect();
+    let snapshots = snapshot::list(&bench.path("r/snapshots")).unwrap();
+    let [one, two] =
+        [1, 2].map(|k: usize| format!("snapshots/{}", snapshots[k].1.file_name().unwrap().to_str().unwrap()));
+    let checkpoints = checkpoint::list(&bench.path("r/checkpoints")).unwrap();
+    let kept = |k: usize| format!("checkpoints/{}", checkpoints[k].1.file_name().unwrap().to_str().unwrap());
+    let cases = [
+        (format!("r/{one}"), two.clone(), "is of another step"),
+        (format!("r/{}", kept(0)), kept(1), "is of another step"),
+        ("r/mesh.h5".to_owned(), "cloud.h5".to_owned(), "is a file of another kind"),
+        ("r/cloud.h5".to_owned(), "operators.h5".to_owned(), "is a file of another kind"),
+        (format!("r/{one}"), kept(0), "is a file of another kind"),
+        ("s/operators.h5".to_owned(), "operators.h5".to_owned(), "is not of this run"),
+        ("s/summary.json".to_owned(), "summary.json".to_owned(), "is not of this run"),
+        ("s/snapshots/000000.h5".to_owned(), "snapshots/000000.h5".to_owned(), "is not of this run"),
+    ];
+    for (from, to, words) in cases {
+        let path = bench.path("r").join(&to);
+        let bytes = fs::read(&path).unwrap();
+        fs::copy(bench.path(&from), &path).unwrap();
+        let message = bench.fail(6, "verify r --steps 0");
+        assert!(message.contains(&format!("\n  {to} ")), "{from} as {to}: {message}");
+        // A list of names alone: what files say of themselves has to do.
+        fs::write(bench.path("r/.dgmpm"), &names).unwrap();
+        let message = bench.fail(6, "verify r --steps 0");
+        assert!(message.contains(&format!("\n  {to} {words}")), "{from} as {to}: {message}");
+        fs::write(bench.path("r/.dgmpm"), &list).unwrap();
+        fs::write(&path, bytes).unwrap();
+    }
+    bench.run("verify r --steps 0");
+    fs::remove_file(bench.path("r").join(kept(1))).unwrap();
+    let message = bench.fail(6, "verify r --steps 0");
+    assert!(message.contains(&format!("{} is missing", kept(1))), "{message}");
+}
+
+#[test]
+fn a_run_that_was_extended_after_few_steps_is_repeated_as_it_was() {
+    let bench = Bench::new();
+    bench.run("run case.toml --out r --set time.end=9e-6 --set regrid=[] --set quantity=[]");
+    let first = snapshot::list(&bench.path("r/snapshots")).unwrap().pop().unwrap().0;
+    bench.run("resume r --set time.end=2.1e-5");
+    bench.run("resume r --set time.end=5e-5");
+    let said = bench.run("verify r --steps 1000");
+    assert!(!said.contains("note:"), "all of it: {said}");
+    assert!(first < 10, "the first end lies before what is repeated: {first}");
+    // The record of its ends is in the checkpoints of a run that was killed, too.
+    let summary = fs::read_to_string(bench.path("r/summary.json")).unwrap();
+    fs::remove_file(bench.path("r/summary.json")).unwrap();
+    own::begin(&bench.path("r/summary.json")).unwrap();
+    bench.run("verify r");
+    assert!(summary.contains("\"ends\""), "{summary}");
+    let message = bench.fail(2, "resume r --set time.end=2e-5");
+    assert!(message.contains("beyond the end 2e-5 s that is asked for"), "{message}");
 }
 
 #[test]
