@@ -9,6 +9,9 @@ use crate::operators::Neighbour;
 use crate::state::State;
 use std::collections::HashMap;
 
+/// Ends of faces at a corner: the number of the face, and which end of it.
+type Ends = Vec<(usize, usize)>;
+
 /// A face under an obstacle.
 struct Face {
     /// Its condition.
@@ -55,7 +58,7 @@ impl Obstacles {
         let mut out = Self { faces: vec![], by_place: HashMap::new(), deepest: DeepestOverlap::default() };
         let blocks = &scheme.operators.blocks;
         // Corners are nodes of the mesh: those of two cells are equal to the last bit.
-        let mut at_corner: HashMap<(usize, [u64; 2]), Vec<(usize, usize)>> = HashMap::new();
+        let mut at_corner: HashMap<(usize, [u64; 2]), Ends> = HashMap::new();
         for &(block, lane) in &blocks.slot {
             let corners = scheme.operators.geometry.corners_of(block, lane);
             for (face, lanes) in blocks.neighbours[block].iter().enumerate() {
