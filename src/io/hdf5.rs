@@ -4,6 +4,8 @@
 //! texts are written with fixed lengths, a file without a seal is read only where the user trusts it, and whatever leads out of
 //! a file is an error.
 
+mod within;
+
 use std::io::Read;
 use std::path::Path;
 

@@ -3,9 +3,11 @@
 //! Numbers have 64 bits and are written inline as base64, not compressed, with the number of their bytes before them. Indices are
 //! signed, since meshio cannot compute with unsigned ones.
 
+mod cells;
 mod decode;
 mod read;
 
+pub use cells::{EDGES, part};
 pub use read::points;
 
 use std::fmt::Write;
