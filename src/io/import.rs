@@ -7,7 +7,7 @@ use crate::error::{Error, Place, Result};
 use crate::file::memory;
 use crate::mesh::Mesh;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The files that can be read as meshes, for messages.
 pub const FORMATS: &str = "give a mesh of Gmsh (.msh, version 4.1 or 2.2; a .geo file must be meshed first: `gmsh -2 case.geo`), a .vtu \
@@ -39,6 +39,9 @@ pub fn read_mesh(path: &Path) -> Result<Mesh> {
 /// Bad input, with its place; tags for a file that has names of groups itself.
 pub fn read_tagged(path: &Path, tags: &Tags) -> Result<Mesh> {
     let kind = kind_of(path)?;
+    if let Some(xdmf) = numbers_of(path, kind) {
+        return read_tagged(&xdmf, tags);
+    }
     if matches!(kind, Kind::Store | Kind::Gmsh) && *tags != Tags::default() {
         let what = "the groups of this file have their names in it";
         return Err(Error::at(
@@ -59,7 +62,8 @@ pub fn read_tagged(path: &Path, tags: &Tags) -> Result<Mesh> {
 /// # Errors
 /// A file that is not there, or of no format that is known.
 pub fn has_own_names(path: &Path) -> Result<bool> {
-    Ok(matches!(kind_of(path)?, Kind::Store | Kind::Gmsh))
+    let kind = kind_of(path)?;
+    Ok(matches!(kind, Kind::Store | Kind::Gmsh) && numbers_of(path, kind).is_none())
 }
 
 /// Reads the mesh of the bytes of a VTU or XDMF file, as if they were a file of this path. No bytes make it panic, or allocate out of
@@ -84,6 +88,13 @@ fn read_beside(path: &Path, parts: Vec<Part>, tags: &Tags) -> Result<Mesh> {
         return Err(Error::at(Place::file(&facets), "the groups of edges are not read from such a file", remedy));
     }
     grids(&facets, kind, |lines| assemble(parts, lines, tags, &source))
+}
+
+/// The XDMF file whose numbers an HDF5 file has: one beside it, where the file is no store of this program.
+fn numbers_of(path: &Path, kind: Kind) -> Option<PathBuf> {
+    let xdmf = path.with_extension("xdmf");
+    let is_foreign = kind == Kind::Store && path.is_file() && !store::is_store(path);
+    (is_foreign && kind_of(&xdmf).ok() == Some(Kind::Xdmf)).then_some(xdmf)
 }
 
 /// Hands on the grids of a file.

@@ -6,7 +6,8 @@ mod to;
 
 use super::print::{note, say, table};
 use crate::error::{Error, Place, Result};
-use crate::io::{FORMATS, read_tagged, write_mesh};
+use crate::format::row;
+use crate::io::{FORMATS, hash, read_tagged, write_mesh};
 use crate::mesh::{Link, Mesh, links, rectangle};
 use crate::problem::{notices, room::check_mesh};
 use args::Action;
@@ -53,6 +54,6 @@ fn write(mesh: &Mesh, links: &[[Link; 4]], to: &To, from: &Path) -> Result<()> {
 }
 
 fn info(mesh: &Mesh, links: &[[Link; 4]]) {
-    table(&mesh.rows());
+    table(&[mesh.rows(), vec![row("fingerprint", hash::of_places(mesh))]].concat());
     notices::of_mesh(mesh, links).iter().for_each(note);
 }

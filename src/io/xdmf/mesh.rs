@@ -16,24 +16,24 @@ const TAGS: [&str; 2] = ["cell_tags", "facet_tags"];
 /// material group). `meshio.read` reads it, with the names of the groups as `field_data`, and DOLFINx by `read_mesh()` and
 /// `read_meshtags(mesh, "mesh")`. It says that [`write_boundary`] writes `boundary.xdmf` beside it.
 pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<()> {
-    let grid = Grid { name: "mesh", data: "group", size: 4, cells: cells_of(mesh), groups: groups_of(mesh, 0) };
-    write_one(path, mesh, &grid, Some(BOUNDARY))
+    let numbers = Numbers::from_0(mesh);
+    write_one(path, mesh, &numbers, &Grid::of_cells(mesh, &numbers, "mesh", "group"), Some(BOUNDARY))
 }
 
 /// Writes the boundary edges that bear a group as grid `boundary`, with the cell attribute `group`; nodes are numbered
 /// as in [`write_mesh`]. DOLFINx reads it by `read_meshtags(mesh, "boundary")`.
 pub fn write_boundary(path: &Path, mesh: &Mesh) -> Result<()> {
-    let grid =
-        Grid { name: "boundary", data: "group", size: 2, cells: edges_of(mesh), groups: edge_groups_of(mesh, 0) };
-    write_one(path, mesh, &grid, None)
+    let numbers = Numbers::from_0(mesh);
+    write_one(path, mesh, &numbers, &Grid::of_edges(mesh, &numbers, "boundary", "group"), None)
 }
 
 /// Writes mesh and groups into one file: the grid `mesh`, and `cell_tags` and `facet_tags` with the groups of cells and of edges,
-/// both numbered from 1. DOLFINx reads them by `read_mesh()`, `read_meshtags(mesh, "cell_tags")` and
+/// numbered by [`numbers`](names::numbers). DOLFINx reads them by `read_mesh()`, `read_meshtags(mesh, "cell_tags")` and
 /// `read_meshtags(mesh, "facet_tags")`; meshio does not read files of several grids.
 pub fn write_all(path: &Path, mesh: &Mesh) -> Result<()> {
-    let grid = Grid { name: "mesh", data: TAGS[0], size: 4, cells: cells_of(mesh), groups: groups_of(mesh, 1) };
-    let lines = Grid { name: TAGS[1], data: TAGS[1], size: 2, cells: edges_of(mesh), groups: edge_groups_of(mesh, 1) };
+    let numbers = Numbers::for_others(mesh);
+    let grid = Grid::of_cells(mesh, &numbers, "mesh", TAGS[0]);
+    let lines = Grid::of_edges(mesh, &numbers, TAGS[1], TAGS[1]);
     let h5 = companion(path)?;
     hdf5::create_sealed(&h5, hdf5::Kept::Named, |file| {
         hdf5::put_program(file)?;
@@ -43,7 +43,7 @@ pub fn write_all(path: &Path, mesh: &Mesh) -> Result<()> {
     let file = file_name(&h5);
     write_document(path, |xml| {
         uniform_grid(xml, (&file, "mesh"), (grid.groups.len(), 4, mesh.nodes.len()), |xml| {
-            names::write(xml, [&mesh.edge_groups, &mesh.groups], 1, None)
+            numbers.write(xml, mesh, None)
         })?;
         tags(xml, &file, ("mesh", TAGS[0]), &grid)?;
         tags(xml, &file, (TAGS[1], TAGS[1]), &lines)
@@ -61,25 +61,43 @@ struct Grid {
     groups: Vec<i32>,
 }
 
-fn cells_of(mesh: &Mesh) -> Vec<i64> {
-    mesh.cells.as_flattened().iter().map(|&n| n as i64).collect()
+/// The numbers of the groups of a mesh.
+struct Numbers {
+    cells: Vec<i32>,
+    edges: Vec<i32>,
 }
 
-/// The groups of the cells, the first of which has the number `first`.
-fn groups_of(mesh: &Mesh, first: i32) -> Vec<i32> {
-    mesh.cell_group.iter().map(|&g| g as i32 + first).collect()
-}
+impl Numbers {
+    /// Their places in the lists of the mesh.
+    fn from_0(mesh: &Mesh) -> Self {
+        let all = |names: &[String]| (0..).take(names.len()).collect();
+        Self { cells: all(&mesh.groups), edges: all(&mesh.edge_groups) }
+    }
 
-fn edges_of(mesh: &Mesh) -> Vec<i64> {
-    let corners = |e: &crate::mesh::BoundaryEdge| FACE_CORNERS[e.face].map(|k| mesh.cells[e.cell][k] as i64);
-    mesh.edges.iter().flat_map(corners).collect()
-}
+    /// By their names, see [`names::numbers`].
+    fn for_others(mesh: &Mesh) -> Self {
+        Self { cells: names::numbers(&mesh.groups), edges: names::numbers(&mesh.edge_groups) }
+    }
 
-fn edge_groups_of(mesh: &Mesh, first: i32) -> Vec<i32> {
-    mesh.edges.iter().map(|e| e.group as i32 + first).collect()
+    fn write(&self, xml: &mut Xml, mesh: &Mesh, facets: Option<&str>) -> Written {
+        names::write(xml, [(&mesh.edge_groups, &self.edges), (&mesh.groups, &self.cells)], facets)
+    }
 }
 
 impl Grid {
+    fn of_cells(mesh: &Mesh, numbers: &Numbers, name: &'static str, data: &'static str) -> Self {
+        let cells = mesh.cells.as_flattened().iter().map(|&n| n as i64).collect();
+        let groups = mesh.cell_group.iter().map(|&group| numbers.cells[group]).collect();
+        Self { name, data, size: 4, cells, groups }
+    }
+
+    fn of_edges(mesh: &Mesh, numbers: &Numbers, name: &'static str, data: &'static str) -> Self {
+        let corners = |e: &crate::mesh::BoundaryEdge| FACE_CORNERS[e.face].map(|k| mesh.cells[e.cell][k] as i64);
+        let cells = mesh.edges.iter().flat_map(corners).collect();
+        let groups = mesh.edges.iter().map(|edge| numbers.edges[edge.group]).collect();
+        Self { name, data, size: 2, cells, groups }
+    }
+
     /// Writes its arrays, the points too.
     fn put(&self, file: &hdf5_metno::File, mesh: &Mesh) -> hdf5_metno::Result<()> {
         let geometry = format!("{}/geometry", self.name);
@@ -96,7 +114,7 @@ impl Grid {
 }
 
 /// Writes one grid of cells with their groups.
-fn write_one(path: &Path, mesh: &Mesh, grid: &Grid, facets: Option<&str>) -> Result<()> {
+fn write_one(path: &Path, mesh: &Mesh, numbers: &Numbers, grid: &Grid, facets: Option<&str>) -> Result<()> {
     let h5 = companion(path)?;
     hdf5::create_sealed(&h5, hdf5::Kept::Named, |file| {
         hdf5::put_program(file)?;
@@ -106,7 +124,7 @@ fn write_one(path: &Path, mesh: &Mesh, grid: &Grid, facets: Option<&str>) -> Res
     let (count, place) = (grid.groups.len(), format!("{}/{}", grid.name, grid.data));
     write_document(path, |xml| {
         uniform_grid(xml, (&file, grid.name), (count, grid.size, mesh.nodes.len()), |xml| {
-            names::write(xml, [&mesh.edge_groups, &mesh.groups], 0, facets)?;
+            numbers.write(xml, mesh, facets)?;
             attribute(xml, grid.data, "Scalar", "Cell", &groups(&file, &place, &[count]))
         })
     })

@@ -39,13 +39,21 @@ pub fn read(about: &xml::Element) -> Result<(Names, Option<String>), String> {
     Ok((names, facets))
 }
 
-/// Writes the names of groups of edges and of cells, the first of which has the number `first`, and the file of the lines.
-pub fn write(xml: &mut Xml, [edges, cells]: [&[String]; 2], first: usize, facets: Option<&str>) -> Written {
+/// The numbers of groups for other programs: their names where these are different whole numbers, as those of a mesh that comes from
+/// DOLFINx; otherwise 1 and so on.
+pub fn numbers(names: &[String]) -> Vec<i32> {
+    let whole: Option<Vec<i32>> =
+        names.iter().map(|name| name.parse().ok().filter(|n: &i32| n.to_string() == *name)).collect();
+    whole.unwrap_or_else(|| (1..).take(names.len()).collect())
+}
+
+/// Writes the names of groups of edges and of cells with their numbers, and the file of the lines.
+pub fn write(xml: &mut Xml, groups: [(&[String], &[i32]); 2], facets: Option<&str>) -> Written {
     let mut text = String::from("<main>");
-    for (dimension, names) in [(1, edges), (2, cells)] {
-        for (group, name) in names.iter().enumerate() {
+    for (dimension, (names, numbers)) in groups.into_iter().enumerate() {
+        for (name, number) in names.iter().zip(numbers) {
             let name = quick_xml::escape::escape(name.as_str());
-            text += &format!("<map key=\"{name}\" dim=\"{dimension}\">{}</map>", group + first);
+            text += &format!("<map key=\"{name}\" dim=\"{}\">{number}</map>", dimension + 1);
         }
     }
     text += "</main>";
