@@ -13,6 +13,10 @@ use std::path::{Path, PathBuf};
 pub const FORMATS: &str = "give a mesh of Gmsh (.msh, version 4.1 or 2.2; a .geo file must be meshed first: `gmsh -2 case.geo`), a .vtu \
                            file of VTK, ParaView or meshio, an .xdmf file of DOLFINx or meshio with its .h5 file, or the .h5 file of `dgmpm mesh`";
 
+/// What a VTU file must be, for messages.
+const VTU: &str =
+    "give an unstructured grid of quadrilaterals, as text, base64 or appended, not compressed or by zlib or LZMA";
+
 /// Bytes at the start of a file by which its kind is told.
 const HEAD: u64 = 4096;
 
@@ -112,7 +116,7 @@ fn grids_of<T>(bytes: &[u8], path: &Path, kind: Kind, then: impl FnOnce(Vec<Part
         ));
     }
     if kind == Kind::Vtu {
-        let fault = |why: String| Error::at(Place::file(path), format!("cannot read the mesh: {why}"), FORMATS);
+        let fault = |why: String| Error::at(Place::file(path), format!("cannot read the mesh: {why}"), VTU);
         return then(vec![vtu::part(bytes, &fault).map_err(fault)?]);
     }
     let fault = |why: String| Error::at(Place::file(path), format!("cannot read the mesh: {why}"), xdmf::REMEDY);

@@ -64,7 +64,7 @@ def by_vtk(mesh, folder):
                     modes = {"ascii": vtk.vtkXMLWriter.Ascii, "binary": vtk.vtkXMLWriter.Binary}
                     writer.SetDataMode(modes.get(mode, vtk.vtkXMLWriter.Appended))
                     writer.SetEncodeAppendedData(mode == "appended_base64")
-                    writer.SetCompressorType({"none": 0, "zlib": 2, "lzma": 3}[compression])
+                    writer.SetCompressorType({"none": 0, "zlib": 1, "lzma": 3}[compression])
                     writer.SetHeaderType(header)
                     writer.SetByteOrder(0 if order == "big" else 1)
                     # Several blocks, the last of which is not full.
