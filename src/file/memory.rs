@@ -3,6 +3,8 @@
 /// What is taken for free, bytes, where the system does not tell: 64 GiB.
 const UNKNOWN: usize = 64 << 30;
 
+const GIB: f64 = (1_u64 << 30) as f64;
+
 /// Memory that this process can still have, bytes: what is free in the system, in its control group, and in its address space.
 pub fn available() -> usize {
     let limits = [of_system(), of_group(), of_process()];
@@ -32,4 +34,16 @@ fn of_group() -> Option<usize> {
 fn of_process() -> Option<usize> {
     let limit = told("/proc/self/limits", "Max address space")?;
     Some(limit.saturating_sub(told("/proc/self/status", "VmSize:")?.checked_mul(1024)?))
+}
+
+/// An error, in words, if so many bytes are more than what is free.
+///
+/// # Errors
+/// What is needed and what is free, GiB.
+pub fn check(bytes: u64) -> Result<(), String> {
+    let (needed, free) = (bytes as f64 / GIB, available() as f64 / GIB);
+    match needed <= free {
+        true => Ok(()),
+        false => Err(format!("it needs about {needed:.1} GiB of memory, and {free:.1} GiB are free")),
+    }
 }

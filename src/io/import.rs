@@ -10,8 +10,8 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// The files that can be read as meshes, for messages.
-pub const FORMATS: &str = "give a mesh of Gmsh (.msh, version 4.1 or 2.2; a .geo file must be meshed first: `gmsh -2 case.geo`), a .vtu \
-                           file of VTK, ParaView or meshio, an .xdmf file of DOLFINx or meshio with its .h5 file, or the .h5 file of `dgmpm mesh`";
+pub const FORMATS: &str = "give a .msh of Gmsh (4.1 or 2.2; a .geo must be meshed first: `gmsh -2 case.geo`), a .vtu, an .xdmf with its .h5, or \
+                           the .h5 of `dgmpm mesh`";
 
 /// What a VTU file must be, for messages.
 const VTU: &str =
@@ -86,6 +86,10 @@ fn read_beside(path: &Path, parts: Vec<Part>, tags: &Tags) -> Result<Mesh> {
     let source = Source { path };
     let own = parts.iter().find_map(|part| part.facets.as_deref()).and_then(|name| xdmf::beside(path, name));
     let Some(facets) = tags.facets.clone().or(own) else { return assemble(parts, vec![], tags, &source) };
+    if !facets.exists() {
+        let what = format!("the file {} with the groups of its edges is not there", facets.display());
+        return Err(source.error(what, "put it there, or name it: `facets` in [mesh] of the scene, or --facets"));
+    }
     let kind = kind_of(&facets)?;
     if !matches!(kind, Kind::Vtu | Kind::Xdmf) {
         let remedy = "give the .xdmf or .vtu file that has lines with the numbers of their groups";

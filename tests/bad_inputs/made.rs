@@ -122,6 +122,8 @@ fn meshes(bench: &Bench, add: &mut impl FnMut(&str, Vec<u8>)) {
         assert!(xdmf.contains(old), "{name}");
         add(name, xdmf.replace(old, new).into_bytes());
     }
+    // A kilobyte of zlib for each megabyte of zeros.
+    add("bomb_mesh.vtu", bomb());
     add("deep.xdmf", format!("<Xdmf><Domain>{}", "<Grid>".repeat(300_000)).into_bytes());
     add("many_elements.xdmf", format!("<Xdmf><Domain>{}</Domain></Xdmf>", "<Grid/>".repeat(300_000)).into_bytes());
     add("legacy.vtk", b"# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\n".to_vec());
@@ -130,6 +132,29 @@ fn meshes(bench: &Bench, add: &mut impl FnMut(&str, Vec<u8>)) {
         hdf5_metno::File::create(&path).unwrap().new_dataset::<f64>().shape([6, 2]).create("x").unwrap();
         std::fs::read(&path).unwrap()
     });
+}
+
+/// A VTU file of 10^8 cells, whose compressed arrays are all zeros.
+fn bomb() -> Vec<u8> {
+    let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+    std::io::copy(&mut std::io::Read::take(std::io::repeat(0), 10 << 20), &mut packed).unwrap();
+    let block = packed.finish().unwrap();
+    let header = [10_u32, 10 << 20, 10 << 20].into_iter().chain([block.len() as u32; 10]);
+    let bytes = [header.flat_map(u32::to_le_bytes).collect::<Vec<u8>>(), block.repeat(10)].concat();
+    let array = |kind: &str, name: &str, components: usize| {
+        format!(
+            "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"0\"/>"
+        )
+    };
+    let head = format!(
+        "<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkZLibDataCompressor\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" \
+         NumberOfCells=\"100000000\"><Points>{}</Points><Cells>{}{}{}</Cells></Piece></UnstructuredGrid><AppendedData encoding=\"raw\">_",
+        array("Float64", "Points", 3),
+        array("UInt8", "connectivity", 1),
+        array("UInt8", "offsets", 1),
+        array("UInt8", "types", 1)
+    );
+    [head.into_bytes(), bytes, b"</AppendedData></VTKFile>".to_vec()].concat()
 }
 
 /// Files that should be stores of the program.

@@ -3,6 +3,7 @@
 use super::tags::{self, Line};
 use super::{Of, Part, Tags};
 use crate::error::{Error, Place, Result};
+use crate::file::memory;
 use crate::io::gmsh::{self, Element, Kind, Raw};
 use crate::mesh::{BoundaryEdge, Error as MeshError, FACE_CORNERS, Mesh, faces::neighbours, links};
 use std::collections::{BTreeMap, HashMap};
@@ -14,6 +15,9 @@ const BODY: &str = "body";
 const BOUNDARY: &str = "boundary";
 /// The data of an export of this program that have the numbers of cells in the file that its mesh came from.
 const NUMBERS: &str = "cell";
+
+/// Bytes of a cell and what is looked up by it, as `MESH` of `problem::room`.
+const CELL: u64 = 500;
 
 /// The file that a mesh comes from, for messages.
 pub struct Source<'a> {
@@ -43,6 +47,8 @@ pub fn assemble(mut parts: Vec<Part>, beside: Vec<Part>, tags: &Tags, source: &S
         )
     })?;
     let mut mesh = parts.remove(at);
+    let bytes = (mesh.cells.count as u64).saturating_mul(CELL);
+    memory::check(bytes).map_err(|why| source.error(why, "give fewer cells"))?;
     merge(&mut mesh, source)?;
     let others: Vec<&Part> = parts.iter().chain(&beside).collect();
     tags::check_wanted(std::iter::once(&mesh).chain(others.iter().copied()), tags, source)?;
@@ -79,7 +85,7 @@ fn merge(mesh: &mut Part, source: &Source) -> Result<()> {
     for (cell, nodes) in &mut mesh.cells.quads {
         for node in nodes {
             let at = usize::try_from(*node).ok().and_then(|node| points.get(node));
-            let x = *at.ok_or_else(|| unknown_node(*cell, *node, source))?;
+            let x = *at.ok_or_else(|| unknown_node(*cell as u64, *node, source))?;
             *node = *known.entry(x.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
                 merged.push(x);
                 merged.len() as u64 - 1
@@ -90,8 +96,8 @@ fn merge(mesh: &mut Part, source: &Source) -> Result<()> {
     Ok(())
 }
 
-fn unknown_node(cell: usize, node: u64, source: &Source) -> Error {
-    source.error(format!("cell {cell} names node {node}, which the file does not have"), DAMAGED)
+fn unknown_node(cell: u64, node: u64, source: &Source) -> Error {
+    source.error(format!("cell {cell} (from 0) names node {node}, which the file does not have"), DAMAGED)
 }
 
 const DAMAGED: &str = "the file is damaged: write it again";
@@ -176,7 +182,7 @@ impl Groups {
 fn in_words(why: gmsh::Error, source: &Source) -> Error {
     let (mut what, mut remedy) = (why.to_string(), why.remedy());
     match why {
-        gmsh::Error::UnknownNode { .. } | gmsh::Error::RepeatedNode(_) => DAMAGED.clone_into(&mut remedy),
+        gmsh::Error::UnknownNode { element, node } => return unknown_node(element, node, source),
         gmsh::Error::Element { kind: Kind { .. }, count, first } => {
             what = what.replace(&format!("{count} element(s)"), &format!("{count} cell(s)"));
             what = what.replace(&format!("element {first}"), &format!("cell {first} (from 0)"));

@@ -5,6 +5,7 @@
 
 use super::read::{Array, Document, Section};
 use crate::error::Result;
+use crate::file::memory;
 use crate::io::unstructured::{Data, Of, Part, of_vtk};
 use std::rc::Rc;
 
@@ -13,6 +14,13 @@ pub const EDGES: &str = "dgmpm_edges";
 
 /// What is read of a file.
 const SECTIONS: &[Section] = &[Section::Place, Section::Cells, Section::CellData, Section::FieldData];
+
+/// Bytes that a point, a cell and a node of a cell take until they are a mesh.
+const POINT: u64 = 100;
+/// As `MESH` of `problem::room` for a cell.
+const CELL: u64 = 500;
+/// Bytes, a number of 8 bytes, a number of a point.
+const NODE: u64 = 24;
 
 /// Names of groups beyond which a file is refused.
 const NAMES: usize = 10_000;
@@ -23,6 +31,9 @@ const NAMES: usize = 10_000;
 /// What is wrong, in words.
 pub fn part<'a>(bytes: &'a [u8], fault: &'a dyn Fn(String) -> crate::Error) -> std::result::Result<Part<'a>, String> {
     let document = Rc::new(Document::read(bytes, SECTIONS)?);
+    let total = |k: usize| document.pieces.iter().fold(0_u64, |sum, piece| sum.saturating_add(piece[k] as u64));
+    // Compressed arrays may be a thousand times as large as the file.
+    memory::check(total(0).saturating_mul(POINT).saturating_add(total(1).saturating_mul(CELL)))?;
     let mut part = Part { points: Some(document.points()?), ..Part::default() };
     for array in document.arrays.iter().filter(|array| array.section == Section::FieldData) {
         field(&document, array, &mut part)?;
@@ -97,7 +108,9 @@ fn add_cells(
     let (offsets, types) = (document.counted(find("offsets")?, count)?, document.counted(find("types")?, count)?);
     let ends: Option<Vec<usize>> = offsets.iter().map(|&x| whole(x).and_then(|x| usize::try_from(x).ok())).collect();
     let ends = ends.filter(|ends| ends.is_sorted()).ok_or("array `offsets` does not count up")?;
-    let connectivity = document.counted(find("connectivity")?, ends.last().copied().unwrap_or(0))?;
+    let count = ends.last().copied().unwrap_or(0);
+    memory::check((count as u64).saturating_mul(NODE))?;
+    let connectivity = document.counted(find("connectivity")?, count)?;
     let nodes: Option<Vec<u64>> = connectivity.iter().map(|&x| whole(x)?.checked_add(base)).collect();
     let nodes = nodes.ok_or("array `connectivity` has what is no number of a point")?;
     let straight = part.own_edges.is_some();
