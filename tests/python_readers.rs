@@ -6,7 +6,8 @@ mod python;
 use std::path::Path;
 
 use dgmpm::parts::io::grid::Field;
-use dgmpm::parts::io::{cloud_file, mesh_file, pvd, snapshot, vtu, xdmf};
+use dgmpm::parts::io::unstructured::{Of, Tags};
+use dgmpm::parts::io::{cloud_file, gmsh, hash, mesh_file, pvd, read_tagged, seal, snapshot, vtu, write_mesh, xdmf};
 
 const TIMES: [f64; 3] = [0.0, 1e-4 / 3.0, 3e-4];
 
@@ -73,4 +74,78 @@ fn other_programs_read_the_files() {
     write_all(folder.path());
     python::run(&python, "tests/python/test_readers.py", [folder.path()]);
     python::run_dolfinx("tests/python/dolfinx_mesh.py", [folder.path()]);
+}
+
+/// The mesh of Gmsh that goes through other programs: two materials, three groups of edges, one of them inside.
+fn of_gmsh() -> std::path::PathBuf {
+    python::root().join("tests/data/gmsh/two_surfaces_41_binary.msh")
+}
+
+/// Names for the numbers of Gmsh, or for those of this program.
+fn tags(first: [i64; 2], facets: Option<&Path>) -> Tags {
+    let cells =
+        ["steel", "soft"].into_iter().zip(first[0]..).map(|(name, number)| (Of::Cells, number, name.to_owned()));
+    let edges = ["loaded", "free", "interface"].into_iter().zip(first[1]..);
+    let names = cells.chain(edges.map(|(name, number)| (Of::Edges, number, name.to_owned()))).collect();
+    Tags { data: None, facets: facets.map(Path::to_owned), names }
+}
+
+#[test]
+fn a_mesh_of_gmsh_is_the_same_after_each_mode_of_meshio_and_vtk() {
+    let Some(python) = python::python() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    python::run(&python, "tests/python/mesh_files.py", [of_gmsh().as_path(), folder.path()]);
+    // The files are ours: HDF5 of another program is read only where it is trusted.
+    seal::trust();
+    let mesh = gmsh::read(&of_gmsh()).unwrap();
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder.path()).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if !name.ends_with(".vtu") && !name.ends_with(".xdmf") || name == "facets.xdmf" {
+            continue;
+        }
+        let facets = (name == "cells.xdmf").then(|| folder.path().join("facets.xdmf"));
+        let found = read_tagged(&path, &tags([20, 10], facets.as_deref())).unwrap();
+        count += 1;
+        if name == "text_12_digits.vtu" {
+            let near = |(a, b): (&[f64; 2], &[f64; 2])| (a[0] - b[0]).abs() < 2e-11 && (a[1] - b[1]).abs() < 2e-11;
+            assert!(found.nodes.iter().zip(&mesh.nodes).all(near), "{name}");
+            assert_eq!((found.cell_group, found.edges.len()), (mesh.cell_group.clone(), mesh.edges.len()), "{name}");
+            continue;
+        }
+        assert_eq!(hash::of_places(&found), hash::of_places(&mesh), "{name}");
+        if name.starts_with("vtk_") {
+            let own = read_tagged(&path, &Tags::default()).unwrap();
+            assert_eq!(
+                (&own.groups, &own.edge_groups),
+                (&mesh.groups, &mesh.edge_groups),
+                "{name}: names of its field data"
+            );
+        }
+    }
+    // 7 .vtu and 3 meshes as XDMF of meshio; 4 + 3 * 3 * 4 files of VTK.
+    assert_eq!(count, 10 + 40);
+}
+
+#[test]
+fn a_mesh_of_gmsh_is_the_same_after_dolfinx_has_read_and_written_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, mesh) = (folder.path().join("in.xdmf"), gmsh::read(&of_gmsh()).unwrap());
+    write_mesh(&path, &mesh).unwrap();
+    if !python::run_dolfinx("tests/python/dolfinx_round.py", [path.as_path(), folder.path()]) {
+        return;
+    }
+    seal::trust();
+    let facets = folder.path().join("facets.xdmf");
+    // DOLFINx orders nodes and cells anew and keeps numbers of groups, not names: the geometry and the groups are compared.
+    for (name, facets) in [("all.xdmf", None), ("mesh.xdmf", Some(facets.as_path()))] {
+        let found = read_tagged(&folder.path().join(name), &tags([1, 1], facets)).unwrap();
+        assert_eq!(hash::of_places(&found), hash::of_places(&mesh), "{name}");
+    }
+    // Its text has 16 digits: the last bit may differ.
+    let text = read_tagged(&folder.path().join("text.xdmf"), &tags([1, 1], None)).unwrap();
+    let area = |mesh: &dgmpm::Mesh| dgmpm::parts::mesh::quality::Quality::of(mesh).area;
+    assert!((area(&text) - area(&mesh)).abs() < 1e-14);
+    assert_eq!((text.edges.len(), &text.edge_groups), (mesh.edges.len(), &mesh.edge_groups));
 }

@@ -6,7 +6,7 @@ cd "$(dirname "$0")/../fuzz"
 
 seconds=${1:-300}
 shift || true
-[ $# -gt 0 ] || set -- gmsh mesh scene expression cloud store
+[ $# -gt 0 ] || set -- gmsh grids mesh scene expression cloud store
 
 host=$(rustc -vV | sed -n 's/^host: //p')
 target=${CARGO_TARGET_DIR:-$PWD/target}

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub struct Args {
     /// Folder of a run, such as runs/square
     run: PathBuf,
-    /// The new mesh: Gmsh, or .h5 of `dgmpm mesh`
+    /// The new mesh: any file that `dgmpm mesh` reads
     #[arg(long, value_name = "FILE")]
     mesh: PathBuf,
     /// The step whose snapshot is taken [default: the last one]

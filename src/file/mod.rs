@@ -1,6 +1,7 @@
 //! Input files as a whole: regular files alone, since a device never ends and a pipe may never begin; and the checksums of
-//! files ([`seal`]).
+//! files ([`seal`]); how much memory there is for them ([`memory`]).
 
+pub mod memory;
 pub mod seal;
 
 use std::fs::{self, Metadata};

@@ -57,8 +57,29 @@ pub struct HighOrderGrid {
     pub point_fields: Vec<Field>,
     /// Fields with a value in each cell.
     pub cell_fields: Vec<Field>,
+    /// The groups of the mesh, where the file is to be read as a mesh again.
+    pub groups: Option<Groups>,
     /// Where the fields come from, for a comment.
     pub about: String,
+}
+
+/// The groups of a mesh, numbered from 0.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Groups {
+    /// Names of the groups of cells; a cell field `group` has the number of each cell.
+    pub cells: Vec<String>,
+    /// Names of the groups of boundary edges.
+    pub edges: Vec<String>,
+    /// Cell, local face, group.
+    pub tagged: Vec<[usize; 3]>,
+}
+
+impl Groups {
+    /// Those of a mesh.
+    pub fn of(mesh: &Mesh) -> Self {
+        let tagged = mesh.edges.iter().map(|edge| [edge.cell, edge.face, edge.group]).collect();
+        Self { cells: mesh.groups.clone(), edges: mesh.edge_groups.clone(), tagged }
+    }
 }
 
 /// Points with fields, written as vertices.
@@ -80,8 +101,7 @@ impl HighOrderGrid {
             let corners = cell.map(|n| mesh.nodes[n]);
             nodes.iter().map(move |&xi| map::position(&corners, xi)).map(|[x, y]| [x, y, 0.0])
         });
-        let (point_fields, cell_fields) = (Vec::new(), Vec::new());
-        Self { degree, points: points.collect(), point_fields, cell_fields, about: String::new() }
+        Self { degree, points: points.collect(), ..Self::default() }
     }
 
     /// Nodes of each cell: (N + 1)^2, and 4 for N = 0.

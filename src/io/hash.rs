@@ -1,7 +1,7 @@
 //! Fingerprints of meshes and clouds: blake3 of the exact bits, as hexadecimal text.
 
 use crate::cloud::Cloud;
-use crate::mesh::Mesh;
+use crate::mesh::{BoundaryEdge, Mesh};
 
 /// Feeds counts, numbers and texts to blake3. Each list comes with its length, so that different contents never give
 /// the same bytes.
@@ -79,6 +79,42 @@ pub fn of_mesh(mesh: &Mesh) -> String {
         }
     }
     digest.counts(mesh.original.iter().copied());
+    digest.finish()
+}
+
+/// The fingerprint of what a mesh is, whatever the order of its nodes, cells and groups and the corner that a cell begins with: the
+/// corners of each cell with the name of its group, and the ends of each edge of a group with that. Two files hold the same mesh where
+/// it is the same.
+pub fn of_places(mesh: &Mesh) -> String {
+    // -0.0 and 0.0 are one place; bits of numbers below 0 are sorted among themselves, which is an order too.
+    let place = |node: usize| mesh.nodes[node].map(|x| (x + 0.0).to_bits());
+    let mut cells: Vec<([[u64; 2]; 4], &str)> = (0..mesh.cells.len())
+        .map(|cell| {
+            let mut corners = mesh.cells[cell].map(place);
+            let first = (0..4).min_by_key(|&k| corners[k]).unwrap_or(0);
+            corners.rotate_left(first);
+            (corners, mesh.groups[mesh.cell_group[cell]].as_str())
+        })
+        .collect();
+    let edge = |edge: &BoundaryEdge| {
+        let mut ends = mesh.face_nodes(edge.cell, edge.face).map(place);
+        ends.sort_unstable();
+        (ends, mesh.edge_groups[edge.group].as_str())
+    };
+    let mut edges: Vec<([[u64; 2]; 2], &str)> = mesh.edges.iter().map(edge).collect();
+    cells.sort_unstable();
+    edges.sort_unstable();
+    // A crack has an edge of its group on both sides.
+    edges.dedup();
+    let mut digest = Digest::new();
+    digest.text("places").count(cells.len());
+    for (corners, group) in cells {
+        digest.counts(corners.as_flattened().iter().copied()).text(group);
+    }
+    digest.count(edges.len());
+    for (ends, group) in edges {
+        digest.counts(ends.as_flattened().iter().copied()).text(group);
+    }
     digest.finish()
 }
 

@@ -4,6 +4,8 @@
 //! texts are written with fixed lengths, a file without a seal is read only where the user trusts it, and whatever leads out of
 //! a file is an error.
 
+mod within;
+
 use std::io::Read;
 use std::path::Path;
 
@@ -18,6 +20,7 @@ use super::regular;
 use super::seal::{self, Seal};
 use crate::built;
 use crate::error::{Error, Place, Result};
+use crate::file::memory;
 
 /// Bytes per chunk: large enough for the disk, small enough for HDF5's cache of 1 MiB.
 const CHUNK_BYTES: usize = 256 * 1024;
@@ -315,7 +318,9 @@ impl Reader {
         // Numbers of fewer than 8 bytes are widened.
         let stored = dataset.storage_size().min(self.bytes).saturating_mul(8);
         match bytes {
-            Some(bytes) if bytes <= stored.saturating_mul(LARGEST_RATIO) => Ok(()),
+            Some(bytes) if bytes <= stored.saturating_mul(LARGEST_RATIO) => {
+                memory::check(bytes).map_err(|why| self.error(format!("array `{name}`: {why}")))
+            }
             _ => Err(self.error(format!("array `{name}` claims the shape {shape:?}, more than the file can hold"))),
         }
     }

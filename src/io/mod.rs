@@ -2,7 +2,8 @@
 //!
 //! Between the steps of the pipeline everything travels in HDF5 ([`store`]): the mesh ([`mesh_file`]), the cloud
 //! ([`cloud_file`]), the matrices ([`operators_file`]) and the state at a time ([`snapshot`]). Meshes come from Gmsh
-//! ([`gmsh`]). For other programs there is an output model ([`grid`]) that knows nothing of a solver, and one writer per
+//! ([`gmsh`]), and from VTU and XDMF files of other programs ([`unstructured`]); [`import`] tells what a file is. For other programs
+//! there is an output model ([`grid`]) that knows nothing of a solver, and one writer per
 //! format: [`vtu`], [`pvd`], [`xdmf`], [`csv`]. Loads over time come from CSV too ([`LoadTable`]).
 //!
 //! A file appears under its name only when it is whole ([`pending`]); what is read is checked before it is used. The folder of a run has
@@ -17,6 +18,7 @@ pub mod gmsh;
 pub mod grid;
 pub mod hash;
 pub mod hdf5;
+mod import;
 mod load_table;
 pub mod mesh_file;
 pub mod operators_file;
@@ -27,33 +29,29 @@ pub mod provenance;
 pub mod pvd;
 pub mod snapshot;
 pub mod store;
+pub mod unstructured;
 pub mod vtu;
 pub mod xdmf;
+mod xml;
 
 pub(crate) use crate::file as regular;
 pub use crate::file::seal;
 pub use load_table::LoadTable;
 
+pub use import::{FORMATS, has_own_names, parse, read_mesh, read_tagged};
+
 use crate::error::Result;
 use crate::mesh::Mesh;
 use std::path::Path;
 
-/// Writes a mesh: `.msh` for Gmsh, else HDF5.
+/// Writes a mesh: `.msh` for Gmsh, `.xdmf` for DOLFINx and ParaView with `.h5` beside it, else HDF5.
 ///
 /// # Errors
 /// A file that cannot be written.
 pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<()> {
-    if path.extension().is_some_and(|ending| ending == "msh") {
-        gmsh::write(mesh, path)
-    } else {
-        mesh_file::write_mesh(path, mesh)
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("msh") => gmsh::write(mesh, path),
+        Some("xdmf") => xdmf::write_all(path, mesh),
+        _ => mesh_file::write_mesh(path, mesh),
     }
-}
-
-/// Reads a mesh: `.h5` as written by `dgmpm mesh`, else Gmsh.
-///
-/// # Errors
-/// Bad input, with its place.
-pub fn read_mesh(path: &Path) -> Result<Mesh> {
-    if store::is_meant_as_store(path) { mesh_file::read_mesh(path) } else { Ok(gmsh::read(path)?.with_common_axes()) }
 }

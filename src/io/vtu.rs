@@ -3,9 +3,11 @@
 //! Numbers have 64 bits and are written inline as base64, not compressed, with the number of their bytes before them. Indices are
 //! signed, since meshio cannot compute with unsigned ones.
 
+mod cells;
 mod decode;
 mod read;
 
+pub use cells::{EDGES, part};
 pub use read::points;
 
 use std::fmt::Write;
@@ -15,7 +17,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use quick_xml::escape::escape;
 
-use super::grid::{Field, HighOrderGrid, PointCloud};
+use super::grid::{Field, Groups, HighOrderGrid, PointCloud};
 use super::pending::write_text;
 use super::seal;
 use crate::error::Result;
@@ -29,7 +31,7 @@ const LAGRANGE_QUADRILATERAL: u8 = 70;
 pub fn write_grid(path: &Path, grid: &HighOrderGrid) -> Result<()> {
     grid.check()?;
     let kind = if grid.degree <= 1 { QUAD } else { LAGRANGE_QUADRILATERAL };
-    let mut piece = Piece::begin(grid.points.len(), grid.cells());
+    let mut piece = Piece::begin(grid.points.len(), grid.cells(), grid.groups.as_ref());
     piece.fields("PointData", &grid.point_fields);
     piece.fields("CellData", &grid.cell_fields);
     piece.points(&grid.points);
@@ -41,7 +43,7 @@ pub fn write_grid(path: &Path, grid: &HighOrderGrid) -> Result<()> {
 pub fn write_points(path: &Path, cloud: &PointCloud) -> Result<()> {
     cloud.check()?;
     let count = cloud.points.len();
-    let mut piece = Piece::begin(count, count);
+    let mut piece = Piece::begin(count, count, None);
     piece.fields("PointData", &cloud.fields);
     piece.points(&cloud.points);
     piece.cells(count, 1, VERTEX);
@@ -52,11 +54,35 @@ pub fn write_points(path: &Path, cloud: &PointCloud) -> Result<()> {
 struct Piece(String);
 
 impl Piece {
-    fn begin(points: usize, cells: usize) -> Self {
-        Self(format!(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-             header_type=\"UInt64\"><UnstructuredGrid><Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"
-        ))
+    fn begin(points: usize, cells: usize, groups: Option<&Groups>) -> Self {
+        let head = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
+                    header_type=\"UInt64\"><UnstructuredGrid>";
+        let mut piece = Self(head.to_owned());
+        if let Some(groups) = groups {
+            piece.groups(groups);
+        }
+        piece.0 += &format!("<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">");
+        piece
+    }
+
+    /// Names of groups as meshio has them in `field_data`, number and dimension, and the edges of groups ([`EDGES`]).
+    fn groups(&mut self, groups: &Groups) {
+        self.0.push_str("<FieldData>");
+        for (dimension, names) in [(1, &groups.edges), (2, &groups.cells)] {
+            for (number, name) in names.iter().enumerate().filter(|(_, name)| !name.is_empty()) {
+                self.rows(name, 1, &[number as i64, dimension]);
+            }
+        }
+        let edges: Vec<i64> = groups.tagged.as_flattened().iter().map(|&k| k as i64).collect();
+        self.rows(EDGES, 3, &edges);
+        self.0.push_str("</FieldData>");
+    }
+
+    /// Whole numbers of no points and no cells.
+    fn rows(&mut self, name: &str, components: usize, values: &[i64]) {
+        let of = |pick: fn(i64, i64) -> i64| values.iter().copied().reduce(pick).unwrap_or(0).to_string();
+        let size = [components, values.len() / components];
+        self.array("Int64", name, size, [&of(i64::min), &of(i64::max)], bytes(values, |k| k.to_le_bytes()));
     }
 
     fn end(mut self, about: &str) -> String {
@@ -91,23 +117,34 @@ impl Piece {
         let last = (count * size).saturating_sub(1);
         self.0.push_str("<Cells>");
         let connectivity = indices(&mut (0..count * size));
-        self.array("Int64", "connectivity", 1, ["0", &last.to_string()], bytes(&connectivity, |k| k.to_le_bytes()));
+        self.array(
+            "Int64",
+            "connectivity",
+            [1, 0],
+            ["0", &last.to_string()],
+            bytes(&connectivity, |k| k.to_le_bytes()),
+        );
         let offsets = indices(&mut (1..=count).map(|cell| cell * size));
         let range = [size.to_string(), (count * size).to_string()];
-        self.array("Int64", "offsets", 1, [&range[0], &range[1]], bytes(&offsets, |k| k.to_le_bytes()));
+        self.array("Int64", "offsets", [1, 0], [&range[0], &range[1]], bytes(&offsets, |k| k.to_le_bytes()));
         let kinds = vec![kind; count];
-        self.array("UInt8", "types", 1, [&kind.to_string(), &kind.to_string()], kinds);
+        self.array("UInt8", "types", [1, 0], [&kind.to_string(), &kind.to_string()], kinds);
         self.0.push_str("</Cells>");
     }
 
     fn reals(&mut self, name: &str, components: usize, values: &[f64]) {
         // NaN is in no range.
         let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().fold(f64::NAN, pick).to_string());
-        self.array("Float64", name, components, [&low, &high], bytes(values, |x| x.to_le_bytes()));
+        self.array("Float64", name, [components, 0], [&low, &high], bytes(values, |x| x.to_le_bytes()));
     }
 
-    fn array(&mut self, number: &str, name: &str, components: usize, range: [&str; 2], data: Vec<u8>) {
-        let several = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
+    /// An array with its components, and its rows where it has not as many as there are points or cells (otherwise 0).
+    fn array(&mut self, number: &str, name: &str, [components, rows]: [usize; 2], range: [&str; 2], data: Vec<u8>) {
+        let said = |what: &str, count: usize, usual: usize| match count == usual {
+            true => String::new(),
+            false => format!(" {what}=\"{count}\""),
+        };
+        let several = said("NumberOfComponents", components, 1) + &said("NumberOfTuples", rows, 0);
         let ([low, high], name) = (range, escape(name));
         // Writing to a String cannot fail.
         let _ = write!(

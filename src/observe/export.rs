@@ -59,13 +59,14 @@ fn values(field: Field, solution: &Solution, points: &[(usize, super::Point)]) -
 }
 
 /// Cell fields: the certificate of each cell (what its points can carry; class 0 lattice, 1 dense, 2 deficient, 3
-/// nodes; dt in s at the initial state), the number in the mesh file, and the law.
+/// nodes; dt in s at the initial state), the number in the mesh file, the group from 0, and the law.
 pub fn cell_fields(mesh: &Mesh, certificates: &[Certificate], material: &[usize]) -> Vec<grid::Field> {
     let scalar = |name: &str, value: &dyn Fn(usize) -> f64| {
         grid::Field::new(name, Kind::Scalar, (0..mesh.cells.len()).map(value).collect())
     };
     vec![
         scalar("cell", &|cell| mesh.number(cell) as f64),
+        scalar("group", &|cell| mesh.cell_group[cell] as f64),
         scalar("material", &|cell| material[cell] as f64),
         scalar("points", &|cell| certificates[cell].points as f64),
         scalar("rank", &|cell| certificates[cell].rank as f64),

@@ -5,7 +5,7 @@ use crate::cloud::Cloud;
 use crate::error::Result;
 use crate::io::cloud_file::{self, Extras};
 use crate::io::snapshot::GridFiles;
-use crate::io::{mesh_file, read_mesh};
+use crate::io::{has_own_names, mesh_file, read_tagged};
 use crate::mesh::Mesh;
 use crate::operators::carry::Deficient;
 use crate::operators::certificate::{Certificate, Class, certify};
@@ -31,7 +31,9 @@ impl Files {
     /// A mesh that cannot be read, or whose groups are not those of the scene.
     pub fn mesh(&self, scene: &Scene) -> Result<Mesh> {
         let Some(path) = &self.mesh else { return scene.build_mesh() };
-        let mesh = scene.cut_mesh(read_mesh(path)?)?;
+        // Numbers of groups mean the same in it, and the lines of the scene are those of another mesh.
+        let tags = if has_own_names(path)? { Default::default() } else { scene.tags(None) };
+        let mesh = scene.cut_mesh(read_tagged(path, &tags)?)?;
         scene.check_exact_materials(&mesh)?;
         Ok(mesh)
     }

@@ -7,7 +7,8 @@ use crate::contact::Pairs;
 use crate::error::{Error, Result};
 use crate::exact::ExactForce;
 use crate::expression::Expression;
-use crate::io::read_mesh;
+use crate::io::read_tagged;
+use crate::io::unstructured::{Of, Tags};
 use crate::lane::Kernel;
 use crate::mesh::{self, Link, Mesh};
 use crate::operators::{Limits, Needs, Operators, Sampling};
@@ -18,6 +19,7 @@ use crate::run::Settings;
 use crate::scene::{self, Boundary, Mesh as Source, Scene, Step};
 use crate::source;
 use crate::step::{Control, Correction, Law, Method as Integration, Pairing, Rescue, Scheme, cfl};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 impl Scene {
@@ -32,12 +34,24 @@ impl Scene {
                 let place = || self.place("mesh.rectangle.cells");
                 mesh::rectangle(*size, *cells).map_err(|why| Error::from(why).or_at(place()))?
             }
-            Source::File(path) => read_mesh(&self.existing("mesh.file", path)?)?,
+            Source::File(path) => {
+                let path = self.existing("mesh.file", path)?;
+                let facets = self.mesh_groups.facets.as_deref().map(|path| self.existing("mesh.facets", path));
+                read_tagged(&path, &self.tags(facets.transpose()?))?
+            }
         };
         let mesh = self.cut_mesh(mesh)?;
         self.check_loads()?;
         self.check_exact_materials(&mesh)?;
         Ok(mesh)
+    }
+
+    /// What names the groups of a mesh of another program; `facets` is the file of its lines, if it has one.
+    pub fn tags(&self, facets: Option<PathBuf>) -> Tags {
+        let of = |is_of_cells: bool| if is_of_cells { Of::Cells } else { Of::Edges };
+        let names = self.mesh_groups.names.iter();
+        let names = names.map(|entry| (of(entry.is_of_cells), entry.number as i64, entry.name.clone())).collect();
+        Tags { data: self.mesh_groups.data.clone(), facets, names }
     }
 
     /// Pairs of boundary groups (by number) that are periodic to each other, each once.

@@ -4,7 +4,7 @@ use super::Body;
 use crate::basis::Lagrange;
 use crate::cloud::Cloud;
 use crate::error::{Error, Result};
-use crate::io::grid::Field as Values;
+use crate::io::grid::{Field as Values, Groups};
 use crate::io::provenance::Provenance;
 use crate::io::snapshot::{GridFiles, Snapshot};
 use crate::io::{mesh_file, pvd, snapshot, vtu, xdmf};
@@ -146,6 +146,7 @@ impl Export {
             let fields = self.fields(solution);
             let mut grid = export::grid(&body.mesh, solution, &fields);
             (grid.cell_fields, grid.about) = (cell_fields, from.line());
+            grid.groups = Some(Groups::of(&body.mesh));
             vtu::write_grid(&grid_path, &grid)?;
             let mut cloud = export::points(&body.mesh, &body.cloud, &body.virtual_points, solution, &fields);
             cloud.about = from.line();

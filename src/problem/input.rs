@@ -131,12 +131,14 @@ struct Source {
 fn sources(scene: &Scene, files: &Files, operators: Option<&Path>, folder: &Folder) -> Vec<Source> {
     let source = |key: &str, path: PathBuf, target: PathBuf| Source { key: key.to_owned(), path, target };
     let mesh = files.mesh.clone().or_else(|| scene.mesh_path()).map(|path| source("mesh.file", path, folder.mesh()));
+    let facets = scene.mesh_groups.facets.as_ref().filter(|_| files.mesh.is_none());
+    let facets = facets.map(|path| source("mesh.facets", scene.resolve(path), folder.mesh()));
     let cloud = files.cloud.clone().or_else(|| scene.cloud_path());
     let cloud = cloud.map(|path| source("cloud.path", path, folder.cloud()));
     let snapshot = scene.initial.snapshot.as_ref();
     let snapshot = snapshot.map(|path| source("initial.snapshot", scene.resolve(path), folder.root.join("initial.h5")));
     let operators = operators.map(|path| source("scheme", path.to_owned(), folder.operators()));
-    let mut out: Vec<Source> = [mesh, cloud, snapshot, operators].into_iter().flatten().collect();
+    let mut out: Vec<Source> = [mesh, facets, cloud, snapshot, operators].into_iter().flatten().collect();
     for (number, boundary) in scene.boundaries.iter().enumerate() {
         for (parameter, file) in boundary.condition.files() {
             let target = folder.root.join(Scene::stored_loads(number, parameter.name));

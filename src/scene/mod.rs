@@ -7,6 +7,7 @@
 mod given;
 mod groups;
 mod load;
+mod mesh;
 mod names;
 mod origin;
 mod outputs;
@@ -28,6 +29,7 @@ use crate::error::{Error, Place, Result};
 use crate::expression::Expression;
 use crate::registry::controls::Control;
 use crate::registry::{self, Chosen, Method, Sweeps, limiters};
+pub use mesh::{GroupName, Mesh, MeshGroups};
 pub use names::Histories;
 use origin::{Origin, Part};
 pub use quantities::MEASURES;
@@ -43,6 +45,8 @@ pub struct Scene {
     pub title: String,
     /// Where the mesh comes from.
     pub mesh: Mesh,
+    /// What names its groups, where it comes from a file of another program.
+    pub mesh_groups: MeshGroups,
     /// Where the material points stand, where a material does not say otherwise.
     pub cloud: Cloud,
     /// Beyond what the points of a cell are replaced.
@@ -79,21 +83,6 @@ pub struct Scene {
     pub regrids: Vec<regrid::Regrid>,
     #[serde(skip)]
     origin: Origin,
-}
-
-/// Where the mesh comes from.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Mesh {
-    /// A Gmsh file, as written in the scene ([`Scene::mesh_path`] resolves it).
-    File(PathBuf),
-    /// [0, size_1] x [0, size_2] with groups left, right, bottom, top and body.
-    Rectangle {
-        /// Edge lengths, in m.
-        size: [f64; 2],
-        /// Cells per direction.
-        cells: [usize; 2],
-    },
 }
 
 /// Where material points stand.

@@ -14,6 +14,7 @@ impl Scene {
         if mesh || matches!(self.mesh, Mesh::File(_)) {
             in_table(&mut document, "mesh", |table| {
                 table.remove("rectangle");
+                super::mesh::KEYS.iter().for_each(|key| drop(table.remove(key)));
                 put(table, "file", "mesh.h5");
             });
         }

@@ -1,10 +1,11 @@
 //! A document to a [`Scene`]: which tables it has, and what holds between the keys of a table.
 
+use super::mesh::mesh;
 use super::origin::Origin;
 use super::points::General;
 use super::reader::Reader;
 use super::tables::{self, SAFETY, WATCHED};
-use super::{Boundary, Cloud, Exact, Initial, Material, Mesh, Scene, Scheme, Source, Step, Watch};
+use super::{Boundary, Cloud, Exact, Initial, Material, Scene, Scheme, Source, Step, Watch};
 use crate::error::Result;
 use crate::expression::Expression;
 use crate::registry::{
@@ -37,7 +38,8 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     root.finish()?;
 
     let need = |key: &'static str, remedy: &str| root.missing(key, remedy);
-    let mesh = mesh(mesh_table.as_mut().ok_or_else(|| need("mesh", "add [mesh] with file = \"name.msh\""))?)?;
+    let (mesh, mesh_groups) =
+        mesh(mesh_table.as_mut().ok_or_else(|| need("mesh", "add [mesh] with file = \"name.msh\""))?)?;
     let mut scheme =
         scheme(scheme_table.as_mut().ok_or_else(|| need("scheme", "add [scheme] with method and degree"))?)?;
     let degree = scheme.degree;
@@ -58,6 +60,7 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     let scene = Scene {
         title: title.unwrap_or_else(|| origin.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()),
         mesh,
+        mesh_groups,
         initial: initial(initial_table.as_mut(), &general.cloud)?,
         cloud: general.cloud,
         limits: general.limits,
@@ -78,22 +81,6 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
         origin: Origin::default(),
     };
     Ok(Scene { origin, ..scene })
-}
-
-fn mesh(table: &mut Reader) -> Result<Mesh> {
-    let values = table.values(tables::MESH)?;
-    table.finish()?;
-    match (values.maybe_text("file"), values.table("rectangle")) {
-        (Some(file), None) => Ok(Mesh::File(PathBuf::from(file))),
-        (None, Some(rectangle)) => {
-            let (size, cells) = crate::registry::grids::rectangle(rectangle);
-            Ok(Mesh::Rectangle { size, cells })
-        }
-        (Some(_), Some(_)) => {
-            Err(table.wrong("rectangle", "[mesh] has both `file` and `rectangle`", "keep one of them"))
-        }
-        (None, None) => Err(table.missing("file", "or rectangle = { size = [3.0, 3.0], cells = [30, 30] }")),
-    }
 }
 
 fn scheme(table: &mut Reader) -> Result<Scheme> {

@@ -30,7 +30,7 @@ pub(super) const TOP: &[Parameter] =
 pub(super) const MESH: &[Parameter] = &[
     key(
         "file",
-        "a Gmsh file, or the .h5 file of `dgmpm mesh`",
+        "a mesh: of Gmsh, a .vtu or .xdmf file of another program, or the .h5 file of `dgmpm mesh`",
         "",
         Form::Text,
         Preset::Absent("none: `rectangle` says what the mesh is"),
@@ -42,6 +42,45 @@ pub(super) const MESH: &[Parameter] = &[
         Form::Table(grids::RECTANGLE),
         Preset::Absent("none: `file` says what the mesh is"),
     ),
+    key(
+        "groups",
+        "of a .vtu or .xdmf file: the data at its cells that have the numbers of groups, or \"none\"",
+        "",
+        Form::Text,
+        Preset::Absent("`gmsh:physical`, `cell_tags`, `facet_tags` and such, or the only whole numbers"),
+    ),
+    key(
+        "facets",
+        "the .vtu or .xdmf file of the lines with the numbers of groups of edges",
+        "",
+        Form::Text,
+        Preset::Absent("the file of the mesh"),
+    ),
+    key(
+        "names",
+        "names for the numbers of groups",
+        "",
+        Form::Tables(GROUP_NAMES),
+        Preset::Absent("those that the file has, otherwise the numbers"),
+    ),
+];
+
+const GROUP_NAMES: &[Parameter] = &[
+    key(
+        "cells",
+        "the number of a group of cells",
+        "",
+        Form::Integer(0, usize::MAX),
+        Preset::Absent("none: `edges` has a number"),
+    ),
+    key(
+        "edges",
+        "the number of a group of edges",
+        "",
+        Form::Integer(0, usize::MAX),
+        Preset::Absent("none: `cells` has a number"),
+    ),
+    needed("name", "its name in the scene", "", Form::Text),
 ];
 
 pub(super) const HISTORIES: Parameter = key(

@@ -41,6 +41,43 @@ fn nothing_that_leads_out_of_a_file_is_followed() {
 }
 
 #[test]
+fn no_link_is_followed_in_the_numbers_of_another_program() {
+    let bench = Bench::new();
+    let text = std::fs::read_to_string(bench.path("good_mesh.xdmf")).unwrap();
+    let item = "<DataItem Format=\"XML\" Dimensions=\"6 2\">0 0 1 0 2 0 0 1 1 1 2 1</DataItem>";
+    let stored = "<DataItem Format=\"HDF\" Dimensions=\"6 2\">numbers.h5:/Mesh/mesh/geometry</DataItem>";
+    assert!(text.contains(item));
+    std::fs::write(bench.path("numbers.xdmf"), text.replace(item, stored)).unwrap();
+    let write = |fill: &dyn Fn(&h5::File)| {
+        let file = h5::File::create(bench.path("numbers.h5")).unwrap();
+        fill(&file);
+        file.close().unwrap();
+    };
+    let points = [0.0, 0.0, 1.0, 0.0, 2.0, 0.0, 0.0, 1.0, 1.0, 1.0, 2.0, 1.0];
+    let put = |group: &h5::Group, name: &str| {
+        group.new_dataset::<f64>().shape([6, 2]).create(name).unwrap().write_raw(&points).unwrap();
+    };
+    write(&|file| put(&file.create_group("Mesh").unwrap().create_group("mesh").unwrap(), "geometry"));
+    let all = ["--trust", "mesh", "info", "numbers.xdmf"];
+    assert!(bench.message(&all[1..]).contains("numbers.h5: the file has no seal of dgmpm"));
+    assert!(bench.good(&all).contains("cells of `1`"));
+    // Who gives the file of the numbers means the mesh.
+    assert!(bench.good(&["--trust", "mesh", "info", "numbers.h5"]).contains("cells of `1`"));
+    write(&|file| {
+        put(file, "geometry");
+        file.create_group("Mesh").unwrap().link_soft("/", "mesh").unwrap();
+    });
+    assert!(bench.message(&all).contains("`mesh` of `/Mesh/mesh/geometry` is a link, and links are not followed"));
+    write(&|file| {
+        let group = file.create_group("Mesh").unwrap().create_group("mesh").unwrap();
+        group.link_external("other.h5", "geometry", "geometry").unwrap();
+    });
+    assert!(bench.message(&all).contains("`geometry` of `/Mesh/mesh/geometry` is a link, and links are not followed"));
+    write(&|file| drop(file.create_group("Mesh").unwrap()));
+    assert!(bench.message(&all).contains("numbers.h5: it has no array `/Mesh/mesh/geometry`"));
+}
+
+#[test]
 fn an_array_that_claims_more_than_the_file_stores_is_refused_before_memory_is_taken() {
     let bench = Bench::new();
     let path = bench.path("claims.h5");

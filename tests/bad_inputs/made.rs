@@ -31,6 +31,7 @@ pub fn cases(bench: &Bench) -> Vec<(String, Vec<String>)> {
     let binary = b"$MeshFormat\n4.1 1 8\n\x01\0\0\0\n$EndMeshFormat\n$Nodes\n";
     add("binary_huge.msh", [&binary[..], &[0xff; 40]].concat());
     stores(&mut add);
+    meshes(bench, &mut add);
     special(bench, &mut cases);
     let own = |name: &str, all: &[&str]| (name.to_owned(), all.iter().map(|word| (*word).to_owned()).collect());
     cases.push(own("4294836225 cells", &["mesh", "rectangle", "--size", "1,1", "--cells", "65535,65535"]));
@@ -71,6 +72,89 @@ fn texts(bench: &Bench, add: &mut impl FnMut(&str, Vec<u8>)) {
     );
     add("deep.vtu", good.replace("<Points>", &"<a>".repeat(300_000)).into_bytes());
     add("many_elements.vtu", good.replace("<Points>", &"<a/>".repeat(300_000)).into_bytes());
+}
+
+/// Meshes of other programs.
+fn meshes(bench: &Bench, add: &mut impl FnMut(&str, Vec<u8>)) {
+    let read = |name: &str| std::fs::read_to_string(bench.path(name)).unwrap();
+    let (vtu, xdmf) = (read("good_mesh.vtu"), read("good_mesh.xdmf"));
+    for (name, old, new) in [
+        ("triangle_mesh.vtu", ">9 9<", ">9 5<"),
+        ("solids_mesh.vtu", ">9 9<", ">9 12<"),
+        ("curved_mesh.vtu", ">9 9<", ">9 23<"),
+        ("unknown_kind_mesh.vtu", ">9 9<", ">9 99<"),
+        ("unknown_node_mesh.vtu", ">0 1 4 3 ", ">0 1 4 77 "),
+        ("negative_node_mesh.vtu", ">0 1 4 3 ", ">0 1 4 -3 "),
+        ("huge_offset_mesh.vtu", ">4 8<", ">4 8000000000000000<"),
+        ("falling_offset_mesh.vtu", ">4 8<", ">4 3<"),
+        ("not_plane_mesh.vtu", ">0 0 0 1 0 0", ">0 0 0 1 0 3"),
+        ("real_group_mesh.vtu", "\"cell_tags\" format=\"ascii\">1 2", "\"cell_tags\" format=\"ascii\">1 2.5"),
+        ("several_data_mesh.vtu", "cell_tags", "some"),
+        ("crossed_mesh.vtu", ">0 1 4 3 ", ">0 1 3 4 "),
+        ("polydata_mesh.vtu", "type=\"UnstructuredGrid\"", "type=\"PolyData\""),
+        ("no_types_mesh.vtu", "\"types\"", "\"kinds\""),
+        ("lz4_mesh.vtu", "version=\"0.1\"", "version=\"0.1\" compressor=\"vtkLZ4DataCompressor\""),
+    ] {
+        assert!(vtu.contains(old), "{name}");
+        add(name, vtu.replacen(old, new, 1).into_bytes());
+    }
+    let hdf = |place: &str| format!("<DataItem Format=\"HDF\" Dimensions=\"6 2\">{place}</DataItem>");
+    let item = "<DataItem Format=\"XML\" Dimensions=\"6 2\">0 0 1 0 2 0 0 1 1 1 2 1</DataItem>";
+    for (name, old, new) in [
+        ("numbers_missing.xdmf", item, &hdf("nowhere.h5:/x")[..]),
+        ("numbers_in_text.xdmf", item, &hdf("good.toml:/x")),
+        ("numbers_of_others.xdmf", item, &hdf("others.h5:/x")),
+        ("numbers_elsewhere.xdmf", item, &hdf("../secret.h5:/x")),
+        ("numbers_at_the_root.xdmf", item, &hdf("/etc/passwd:/x")),
+        ("numbers_nowhere.xdmf", item, &hdf("x")),
+        ("numbers_as_bytes.xdmf", "Format=\"XML\"", "Format=\"Binary\""),
+        ("numbers_of_a_function.xdmf", "<DataItem", "<DataItem ItemType=\"Function\""),
+        ("word_for_a_number.xdmf", ">0 0 1 0", ">0 0 one 0"),
+        ("odd_points.xdmf", ">0 0 1 0", ">0 1 0"),
+        ("odd_cells.xdmf", ">0 1 4 3 ", ">0 1 4 "),
+        ("other_geometry.xdmf", "\"XY\"", "\"ORIGIN_DXDY\""),
+        ("other_topology.xdmf", "\"Quadrilateral\"", "\"2DSMesh\""),
+        ("cut_mixed.xdmf", "\"Quadrilateral\"", "\"Mixed\""),
+        ("cut_off.xdmf", "</Topology>", ""),
+        ("no_domain.xdmf", "Domain", "Area"),
+        ("series_of_fields.xdmf", "Name=\"mesh\"", "Name=\"series\""),
+    ] {
+        assert!(xdmf.contains(old), "{name}");
+        add(name, xdmf.replace(old, new).into_bytes());
+    }
+    // A kilobyte of zlib for each megabyte of zeros.
+    add("bomb_mesh.vtu", bomb());
+    add("deep.xdmf", format!("<Xdmf><Domain>{}", "<Grid>".repeat(300_000)).into_bytes());
+    add("many_elements.xdmf", format!("<Xdmf><Domain>{}</Domain></Xdmf>", "<Grid/>".repeat(300_000)).into_bytes());
+    add("legacy.vtk", b"# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\n".to_vec());
+    add("others.h5", {
+        let path = bench.path("others.h5");
+        hdf5_metno::File::create(&path).unwrap().new_dataset::<f64>().shape([6, 2]).create("x").unwrap();
+        std::fs::read(&path).unwrap()
+    });
+}
+
+/// A VTU file of 10^8 cells, whose compressed arrays are all zeros.
+fn bomb() -> Vec<u8> {
+    let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+    std::io::copy(&mut std::io::Read::take(std::io::repeat(0), 10 << 20), &mut packed).unwrap();
+    let block = packed.finish().unwrap();
+    let header = [10_u32, 10 << 20, 10 << 20].into_iter().chain([block.len() as u32; 10]);
+    let bytes = [header.flat_map(u32::to_le_bytes).collect::<Vec<u8>>(), block.repeat(10)].concat();
+    let array = |kind: &str, name: &str, components: usize| {
+        format!(
+            "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"0\"/>"
+        )
+    };
+    let head = format!(
+        "<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkZLibDataCompressor\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" \
+         NumberOfCells=\"100000000\"><Points>{}</Points><Cells>{}{}{}</Cells></Piece></UnstructuredGrid><AppendedData encoding=\"raw\">_",
+        array("Float64", "Points", 3),
+        array("UInt8", "connectivity", 1),
+        array("UInt8", "offsets", 1),
+        array("UInt8", "types", 1)
+    );
+    [head.into_bytes(), bytes, b"</AppendedData></VTKFile>".to_vec()].concat()
 }
 
 /// Files that should be stores of the program.

@@ -88,7 +88,9 @@ fn steady(message: &str) -> String {
 fn arguments(file: &str) -> Vec<String> {
     let all = match file.rsplit_once('.').map(|(_, ending)| ending) {
         Some("toml") => vec!["run", file, "--out", "out", "--force"],
-        Some("msh" | "h5") => vec!["mesh", file, "--out", "out.h5", "--force"],
+        // A VTU file may be points, too: those with the word are meshes.
+        Some("vtu") if file.contains("mesh") => vec!["mesh", file, "--out", "out.h5", "--force"],
+        Some("msh" | "h5" | "xdmf" | "vtk") => vec!["mesh", file, "--out", "out.h5", "--force"],
         _ => {
             let cloud = format!("cloud.path={file}");
             let all = ["seed", "good.toml", "--set", &cloud, "--out", "out.h5", "--force"];
@@ -99,11 +101,16 @@ fn arguments(file: &str) -> Vec<String> {
 }
 
 /// Files of the corpus that are good, or parts of others.
-const GOOD: [&str; 3] = ["good.toml", "good.vtu", "two_bodies_mesh.msh"];
+const GOOD: [&str; 5] = ["good.toml", "good.vtu", "good_mesh.vtu", "good_mesh.xdmf", "two_bodies_mesh.msh"];
 
-/// Scenes that name the file at fault.
-const OTHERS: [(&str, &str); 2] =
-    [("device_for_a_mesh.toml", "error: /dev/zero: "), ("folder_for_a_mesh.toml", "error: .: ")];
+/// Files that name the file at fault.
+const OTHERS: [(&str, &str); 5] = [
+    ("device_for_a_mesh.toml", "error: /dev/zero: "),
+    ("folder_for_a_mesh.toml", "error: .: "),
+    ("numbers_missing.xdmf", "error: nowhere.h5: "),
+    ("numbers_in_text.xdmf", "error: good.toml: "),
+    ("numbers_of_others.xdmf", "error: others.h5: "),
+];
 
 #[test]
 fn each_bad_file_has_its_message() {

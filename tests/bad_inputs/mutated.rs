@@ -2,7 +2,8 @@
 //! look for longer.
 
 use dgmpm::parts::expression::Expression;
-use dgmpm::parts::io::{LoadTable, gmsh, points, vtu};
+use dgmpm::parts::io::unstructured::Tags;
+use dgmpm::parts::io::{LoadTable, gmsh, parse, points, vtu};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -22,7 +23,7 @@ fn changed(file: &[u8], places: &[(prop::sample::Index, u8)], cut: &[prop::sampl
 }
 
 proptest! {
-    // Each case reads four files of a kilobyte: .2 s in all.
+    // Each case reads six files of a kilobyte: .2 s in all.
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
@@ -34,6 +35,10 @@ proptest! {
             prop_assert!(fields.iter().all(|f| f.values.len() == points.len() * f.kind.components()));
         }
         let _ = gmsh::parse(&changed(&good("two_bodies_mesh.msh"), &places, &cut)).map(|mesh| mesh.check());
+        for name in ["good_mesh.vtu", "good_mesh.xdmf"] {
+            let mesh = parse(&changed(&good(name), &places, &cut), Path::new(name), &Tags::default());
+            prop_assert!(mesh.is_err() || mesh.is_ok_and(|mesh| mesh.check().is_ok()));
+        }
         let rows = changed(b"x,y,velocity_1,velocity_2,a\n0.5,0.25,1,2,3\n0.1,0.2,1e3,-2,3\n", &places, &cut);
         let text = String::from_utf8_lossy(&rows);
         let _ = points::of_rows(&text, Path::new("points.csv"));

@@ -1,5 +1,7 @@
 //! Arguments of `dgmpm mesh`.
 
+use super::groups::Groups;
+use super::to::To;
 use std::path::PathBuf;
 
 /// Arguments.
@@ -8,21 +10,12 @@ use std::path::PathBuf;
 pub struct Args {
     #[command(subcommand)]
     pub action: Option<Action>,
-    /// Gmsh file (MSH 2.2 or 4.1), or a mesh.h5
+    /// Gmsh file (MSH 2.2 or 4.1), .vtu or .xdmf file of another program, or a mesh.h5
     pub file: Option<PathBuf>,
     #[command(flatten)]
+    pub groups: Groups,
+    #[command(flatten)]
     pub to: To,
-}
-
-/// Where a mesh goes.
-#[derive(Debug, clap::Args)]
-pub struct To {
-    /// Where to write: .h5, or .msh for Gmsh [default: the input's name with .h5, or rectangle.h5]
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-    /// Replace the file
-    #[arg(long)]
-    pub force: bool,
 }
 
 /// What is done besides an import.
@@ -41,7 +34,9 @@ pub enum Action {
     },
     /// Print counts, groups, sizes and quality
     Info {
-        /// Gmsh file or mesh.h5
+        /// Gmsh, .vtu or .xdmf file, or a mesh.h5
         file: PathBuf,
+        #[command(flatten)]
+        groups: Groups,
     },
 }

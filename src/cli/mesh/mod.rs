@@ -1,23 +1,26 @@
 //! `dgmpm mesh`: import, make, inspect.
 
 mod args;
+mod groups;
+mod to;
 
-use super::output::keep;
 use super::print::{note, say, table};
 use crate::error::{Error, Place, Result};
-use crate::io::{read_mesh, write_mesh};
+use crate::format::row;
+use crate::io::{FORMATS, hash, read_tagged, write_mesh};
 use crate::mesh::{Link, Mesh, links, rectangle};
 use crate::problem::{notices, room::check_mesh};
-use args::{Action, To};
+use args::Action;
 use std::path::Path;
+use to::To;
 
 pub use args::Args;
 
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     match (&args.action, &args.file) {
-        (Some(Action::Info { file }), _) => {
-            let mesh = read_mesh(file)?;
+        (Some(Action::Info { file, groups }), _) => {
+            let mesh = read_tagged(file, &groups.tags()?)?;
             info(&mesh, &links_of(&mesh, file)?);
             Ok(())
         }
@@ -27,13 +30,13 @@ pub fn run(args: &Args) -> Result<()> {
             let cells: [usize; 2] = cells[..].try_into().map_err(|_| pair("--cells"))?;
             check_mesh(cells[0].saturating_mul(cells[1]))?;
             let mesh = rectangle(size, cells)?;
-            write(&mesh, &links(&mesh)?, to, Path::new("rectangle.h5"))
+            write(&mesh, &links(&mesh)?, to, Path::new("rectangle.msh"))
         }
         (None, Some(file)) => {
-            let mesh = read_mesh(file)?;
-            write(&mesh, &links_of(&mesh, file)?, &args.to, &file.with_extension("h5"))
+            let mesh = read_tagged(file, &args.groups.tags()?)?;
+            write(&mesh, &links_of(&mesh, file)?, &args.to, file)
         }
-        (None, None) => Err(Error::input("no mesh is named", "give a Gmsh file, or `rectangle`, or `info FILE`")),
+        (None, None) => Err(Error::input("no mesh is named", format!("{FORMATS}, or `rectangle`, or `info FILE`"))),
     }
 }
 
@@ -42,16 +45,15 @@ fn links_of(mesh: &Mesh, file: &Path) -> Result<Vec<[Link; 4]>> {
 }
 
 /// Writes a mesh whose boundary is wholly tagged.
-fn write(mesh: &Mesh, links: &[[Link; 4]], to: &To, default: &Path) -> Result<()> {
-    let out = to.out.as_deref().unwrap_or(default);
-    keep(out, to.force)?;
-    write_mesh(out, mesh)?;
+fn write(mesh: &Mesh, links: &[[Link; 4]], to: &To, from: &Path) -> Result<()> {
+    let out = to.path(from)?;
+    write_mesh(&out, mesh)?;
     info(mesh, links);
     say(format!("written to {}", out.display()));
     Ok(())
 }
 
 fn info(mesh: &Mesh, links: &[[Link; 4]]) {
-    table(&mesh.rows());
+    table(&[mesh.rows(), vec![row("fingerprint", hash::of_places(mesh))]].concat());
     notices::of_mesh(mesh, links).iter().for_each(note);
 }

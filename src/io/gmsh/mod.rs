@@ -20,8 +20,9 @@ use crate::error::Result;
 use crate::io::regular;
 use crate::mesh::Mesh;
 
+pub(in crate::io) use assemble::mesh as assemble;
 pub use error::{At, Error};
-pub use kinds::Kind;
+pub use kinds::{Kind, LINE, POINT, QUAD};
 pub use write::{to_text, write};
 
 /// Reads a mesh from an MSH file.
@@ -43,32 +44,32 @@ pub fn parse(bytes: &[u8]) -> std::result::Result<Mesh, Error> {
 
 /// The contents of a file, before they are made into a mesh. Groups are physical tags; 0 means no group.
 #[derive(Debug, Default)]
-struct Raw {
+pub(in crate::io) struct Raw {
     /// Names of physical groups by dimension and tag, in the order of tags.
-    names: std::collections::BTreeMap<(i32, i32), String>,
+    pub names: std::collections::BTreeMap<(i32, i32), String>,
     /// Whether groups are those of entities (MSH 4.1), and not tags of the elements (MSH 2.2).
-    entities: bool,
+    pub entities: bool,
     /// Whether any physical surface is defined.
-    surfaces: bool,
+    pub surfaces: bool,
     /// Number and coordinates of each node.
-    nodes: Vec<(u64, [f64; 3])>,
-    lines: Vec<Element<2>>,
-    quads: Vec<Element<4>>,
+    pub nodes: Vec<(u64, [f64; 3])>,
+    pub lines: Vec<Element<2>>,
+    pub quads: Vec<Element<4>>,
     /// Elements that cannot be used: for each type how many, and the number of the first.
-    refused: std::collections::BTreeMap<i32, (usize, u64)>,
+    pub refused: std::collections::BTreeMap<i32, (usize, u64)>,
 }
 
 impl Raw {
     /// The name of a physical group; its tag where it has none.
-    fn name(&self, dimension: i32, tag: i32) -> String {
+    pub fn name(&self, dimension: i32, tag: i32) -> String {
         self.names.get(&(dimension, tag)).cloned().unwrap_or_else(|| tag.to_string())
     }
 }
 
 /// An element: its number, its physical tag (0 for none), the numbers of its nodes.
 #[derive(Debug, Clone, Copy)]
-struct Element<const N: usize> {
-    number: u64,
-    group: i32,
-    nodes: [u64; N],
+pub(in crate::io) struct Element<const N: usize> {
+    pub number: u64,
+    pub group: i32,
+    pub nodes: [u64; N],
 }

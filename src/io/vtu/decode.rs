@@ -11,8 +11,23 @@ pub struct Coding {
     big_endian: bool,
     /// Whether a number of a header has 8 bytes, and not 4.
     wide: bool,
-    zlib: bool,
+    packing: Option<Packing>,
 }
+
+/// Bytes that a compressed byte may give: deflate gives 1032 at most. LZMA could give more, and in the blocks of 32 KiB that programs
+/// write it does not.
+const LARGEST_RATIO: u64 = 1100;
+
+/// How arrays are compressed.
+#[derive(Debug, Clone, Copy)]
+enum Packing {
+    Zlib,
+    /// In the container of xz.
+    Lzma,
+}
+
+/// What the decoder of LZMA may take, KiB: the dictionary of the highest level has 64 MiB.
+const DICTIONARY: u32 = 66 << 10;
 
 /// The type of the numbers of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,6 +56,11 @@ impl Number {
             "Float64" => Number::Real(8),
             _ => return None,
         })
+    }
+
+    /// Whether its values are whole.
+    pub fn is_whole(self) -> bool {
+        !matches!(self, Number::Real(_))
     }
 
     fn bytes(self) -> usize {
@@ -82,12 +102,15 @@ impl Coding {
             Some("UInt64") => true,
             Some(other) => return Err(format!("the type `{other}` of headers is not known")),
         };
-        let zlib = match compressor {
-            None | Some("") => false,
-            Some("vtkZLibDataCompressor") => true,
-            Some(other) => return Err(format!("it is compressed by `{other}`; zlib or no compression can be read")),
+        let packing = match compressor {
+            None | Some("") => None,
+            Some("vtkZLibDataCompressor") => Some(Packing::Zlib),
+            Some("vtkLZMADataCompressor") => Some(Packing::Lzma),
+            Some(other) => {
+                return Err(format!("it is compressed by `{other}`; zlib, LZMA or no compression can be read"));
+            }
         };
-        Ok(Self { big_endian, wide, zlib })
+        Ok(Self { big_endian, wide, packing })
     }
 
     /// Numbers that stand as text.
@@ -129,7 +152,10 @@ impl Coding {
         count: usize,
     ) -> Result<Vec<f64>, String> {
         let wanted = count.checked_mul(number.bytes()).ok_or("it claims more numbers than a file can have")?;
-        let data = if self.zlib { self.inflated(decode, wanted)? } else { self.plain(decode, wanted)? };
+        let data = match self.packing {
+            Some(packing) => self.unpacked(decode, wanted, packing)?,
+            None => self.plain(decode, wanted)?,
+        };
         let value = |bytes: &[u8]| {
             let mut own = [0; 8];
             let own = &mut own[..bytes.len()];
@@ -153,7 +179,12 @@ impl Coding {
         Ok(bytes)
     }
 
-    fn inflated(&self, decode: &dyn Fn(usize) -> Result<Vec<u8>, String>, wanted: usize) -> Result<Vec<u8>, String> {
+    fn unpacked(
+        &self,
+        decode: &dyn Fn(usize) -> Result<Vec<u8>, String>,
+        wanted: usize,
+        packing: Packing,
+    ) -> Result<Vec<u8>, String> {
         let size = self.size();
         let short = || "it ends within its header".to_owned();
         let blocks = self.head(&decode(size)?, 0).ok_or_else(short)?;
@@ -172,8 +203,8 @@ impl Coding {
         for length in lengths {
             let block = bytes.get(at..at + length).ok_or("it ends within a compressed block")?;
             at += length;
-            let most = (wanted - out.len()) as u64 + 1;
-            let read = flate2::read::ZlibDecoder::new(block).take(most).read_to_end(&mut out);
+            let most = ((wanted - out.len()) as u64 + 1).min(LARGEST_RATIO.saturating_mul(length as u64));
+            let read = packing.reader(block).take(most).read_to_end(&mut out);
             read.map_err(|why| format!("a compressed block is damaged: {why}"))?;
             if out.len() > wanted {
                 return Err(format!("it has more than the {wanted} bytes that its points need"));
@@ -198,6 +229,16 @@ impl Coding {
         match values.len() == count {
             true => Ok(values),
             false => Err(format!("it has {} numbers, and its points need {count}", values.len())),
+        }
+    }
+}
+
+impl Packing {
+    /// The bytes of a compressed block.
+    fn reader(self, block: &[u8]) -> Box<dyn Read + '_> {
+        match self {
+            Packing::Zlib => Box::new(flate2::read::ZlibDecoder::new(block)),
+            Packing::Lzma => Box::new(lzma_rust2::XzReader::new_mem_limit(block, false, DICTIONARY)),
         }
     }
 }
@@ -285,7 +326,7 @@ mod tests {
         let blocks: Vec<Vec<u8>> = bytes.chunks(16).map(packed).collect();
         let lengths = blocks.iter().map(|block| block.len() as u32);
         let header: Vec<u8> = [3, 16, 8].into_iter().chain(lengths).flat_map(u32::to_le_bytes).collect();
-        let zlib = Coding { zlib: true, ..Coding::default() };
+        let zlib = Coding { packing: Some(Packing::Zlib), ..Coding::default() };
         let all = [header.clone(), blocks.concat()].concat();
         assert_eq!(zlib.raw(&all, Number::Real(8), 5).unwrap(), values);
         // As VTK and meshio do.
@@ -296,7 +337,7 @@ mod tests {
 
     #[test]
     fn a_compressed_array_that_claims_too_much_is_refused_without_the_memory() {
-        let zlib = Coding { zlib: true, ..Coding::default() };
+        let zlib = Coding { packing: Some(Packing::Zlib), ..Coding::default() };
         let bytes = [u32::MAX, 1 << 15, 0, 7].map(u32::to_le_bytes).concat();
         assert!(zlib.raw(&bytes, Number::Real(8), 3).unwrap_err().contains("ends within its header"));
         let bytes = [1, 8, 8, u32::MAX].map(u32::to_le_bytes).concat();

@@ -1,19 +1,16 @@
-//! Points and the fields at them from a VTU file, as VTK, ParaView, pyvista, meshio and this program write it: arrays inline or
-//! appended, as text, base64 or raw bytes, not compressed or by zlib.
+//! Arrays of a VTU file, as VTK, ParaView, pyvista, meshio and this program write it: arrays inline or
+//! appended, as text, base64 or raw bytes, not compressed, by zlib or by LZMA.
 //!
-//! Only the points and their data are read. No file makes this part panic, or take memory or time out of proportion to its
-//! bytes.
+//! Only the arrays of the sections that are asked for are read. No file makes this part panic, or take memory or time out of
+//! proportion to its bytes.
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
 use super::decode::{Coding, Number};
 use crate::io::grid::{Field, Kind};
+use crate::io::xml::{DEPTH, attribute};
 
-/// Elements within each other beyond which a file is refused; a VTU file has 5.
-const DEPTH: usize = 16;
-/// Attributes of an element beyond which a file is refused; VTK writes up to 9.
-const ATTRIBUTES: usize = 32;
 /// Elements beyond which a file is refused: a hundred fields in a hundred pieces.
 const ELEMENTS: usize = 20_000;
 /// Fields beyond which a file is refused: each is looked for by its name in each piece.
@@ -21,6 +18,21 @@ const FIELDS: usize = 1000;
 
 /// Points with their fields.
 type Found = (Vec<[f64; 3]>, Vec<Field>);
+
+/// Where an array stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Section {
+    /// `Points`.
+    Place,
+    /// `PointData`.
+    PointData,
+    /// `Cells`.
+    Cells,
+    /// `CellData`.
+    CellData,
+    /// `FieldData`, of no piece.
+    FieldData,
+}
 
 /// How an array is stored.
 #[derive(Clone, Copy, PartialEq)]
@@ -31,28 +43,33 @@ enum Format {
 }
 
 /// An array of a piece: its header, and its text where it is inline.
-struct Array {
-    /// Whether it holds the points, and not a field at them.
-    is_place: bool,
-    /// Points of its piece.
-    points: usize,
-    name: String,
-    number: Number,
-    components: usize,
+pub(super) struct Array {
+    pub section: Section,
+    /// The number of its piece.
+    pub piece: usize,
+    pub name: String,
+    pub number: Number,
+    pub components: usize,
+    /// Rows of an array of `FieldData`, if it says them.
+    pub tuples: Option<usize>,
     format: Format,
     text: Vec<u8>,
 }
 
-/// The document on the way through it.
-#[derive(Default)]
-struct Document {
+/// A document with the arrays of some sections.
+pub(super) struct Document<'a> {
+    bytes: &'a [u8],
+    wanted: &'static [Section],
     coding: Coding,
     path: Vec<Vec<u8>>,
-    points: usize,
-    arrays: Vec<Array>,
+    /// Points and cells of each piece.
+    pub pieces: Vec<[usize; 2]>,
+    pub arrays: Vec<Array>,
     /// Where the appended data begin, behind their `_`, and whether they are raw bytes.
     appended: Option<(usize, bool)>,
     elements: usize,
+    /// Whether the array that was begun last is not read.
+    skipped: bool,
 }
 
 /// Reads the points of a file, and all fields at them with 1, 3 or 9 components that each piece of the file has.
@@ -60,15 +77,10 @@ struct Document {
 /// # Errors
 /// What is wrong, in words.
 pub fn points(bytes: &[u8]) -> Result<Found, String> {
-    let document = Document::read(bytes)?;
-    let appended = document.appended.map(|(at, raw)| (&bytes[at..], raw));
-    let (mut points, mut fields): Found = (Vec::new(), Vec::new());
-    for array in &document.arrays {
-        let values = array.values(&document.coding, appended)?;
-        if array.is_place {
-            points.extend(values.as_chunks::<3>().0);
-            continue;
-        }
+    let document = Document::read(bytes, &[Section::Place, Section::PointData])?;
+    let mut fields: Vec<Field> = Vec::new();
+    for array in document.arrays.iter().filter(|array| array.section == Section::PointData) {
+        let values = document.values(array)?;
         let kinds = [Kind::Scalar, Kind::Vector, Kind::Tensor];
         let Some(kind) = kinds.into_iter().find(|kind| kind.components() == array.components) else { continue };
         let known = fields.len();
@@ -78,78 +90,137 @@ pub fn points(bytes: &[u8]) -> Result<Found, String> {
             None => fields.push(Field::new(&array.name, kind, values)),
         }
     }
+    let points = document.points()?;
     fields.retain(|field| field.values.len() == points.len() * field.kind.components());
     Ok((points, fields))
 }
 
-impl Array {
-    fn values(&self, coding: &Coding, appended: Option<(&[u8], bool)>) -> Result<Vec<f64>, String> {
-        let count = self.points.checked_mul(self.components).ok_or("it claims more points than there are numbers")?;
-        let named = |why: String| format!("array `{}`: {why}", self.name);
-        let values = match (self.format, appended) {
-            (Format::Text, _) => coding.text(&self.text, count),
-            (Format::Base64, _) => coding.base64(&self.text, self.number, count),
-            (Format::Appended(_), None) => Err("it is appended, and the file has no appended data".to_owned()),
-            (Format::Appended(at), Some((all, raw))) => match (all.get(at..), raw) {
-                (None, _) => Err(format!("it begins at byte {at} of the appended data, behind their end")),
-                (Some(rest), true) => coding.raw(rest, self.number, count),
-                (Some(rest), false) => coding.base64(rest, self.number, count),
-            },
+impl<'a> Document<'a> {
+    /// Reads a document, and of its arrays those of some sections.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn read(bytes: &'a [u8], wanted: &'static [Section]) -> Result<Self, String> {
+        let mut document = Self {
+            bytes,
+            wanted,
+            coding: Coding::default(),
+            path: vec![],
+            pieces: vec![],
+            arrays: vec![],
+            appended: None,
+            elements: 0,
+            skipped: false,
         };
-        values.map_err(named)
-    }
-}
-
-impl Document {
-    fn read(bytes: &[u8]) -> Result<Self, String> {
-        let mut reader = Reader::from_reader(bytes);
-        let mut document = Self::default();
-        loop {
-            let event = reader.read_event().map_err(|why| format!("byte {}: {why}", reader.error_position()))?;
-            match event {
-                Event::Start(element) => {
-                    document.open(&element)?;
-                    let raw = document.is_appended(&element)?;
-                    document.path.push(element.name().as_ref().to_vec());
-                    if let Some(raw) = raw {
-                        let start = usize::try_from(reader.buffer_position()).map_err(|why| why.to_string())?;
-                        let mark = bytes[start..].iter().position(|byte| *byte == b'_');
-                        let mark = mark.ok_or("the appended data have no `_` at their start")?;
-                        document.appended = Some((start + mark + 1, raw));
-                        // What follows may be any bytes.
-                        break;
-                    }
-                }
-                Event::Empty(element) => document.open(&element)?,
-                Event::End(_) => drop(document.path.pop()),
-                Event::Text(text) if document.is_in_array() => {
-                    if let Some(array) = document.arrays.last_mut() {
-                        array.text.extend_from_slice(&text);
-                    }
-                }
-                Event::Eof => break,
-                _ => {}
-            }
-        }
-        match document.arrays.iter().any(|array| array.is_place) {
+        document.walk()?;
+        match document.arrays.iter().any(|array| array.section == Section::Place) {
             true => Ok(document),
             false => Err("it is not an unstructured grid with points".to_owned()),
         }
     }
 
-    /// Whether a text stands in the last array that was begun.
-    fn is_in_array(&self) -> bool {
-        self.path.len() == 5 && self.path[4] == b"DataArray" && self.section(&self.path[..4]).is_some()
+    /// The points of all pieces.
+    pub fn points(&self) -> Result<Vec<[f64; 3]>, String> {
+        let mut points = Vec::new();
+        for array in self.arrays.iter().filter(|array| array.section == Section::Place) {
+            points.extend(self.values(array)?.as_chunks::<3>().0);
+        }
+        Ok(points)
     }
 
-    /// Whether an array at this path holds points (true) or their data.
-    fn section(&self, path: &[Vec<u8>]) -> Option<bool> {
-        let names: [&[u8]; 4] = path.iter().map(Vec::as_slice).collect::<Vec<_>>().try_into().ok()?;
-        match names {
-            [b"VTKFile", b"UnstructuredGrid", b"Piece", b"Points"] => Some(true),
-            [b"VTKFile", b"UnstructuredGrid", b"Piece", b"PointData"] => Some(false),
-            _ => None,
+    /// All numbers of an array.
+    ///
+    /// # Errors
+    /// As for [`Document::counted`]; an array that does not say how many numbers it has.
+    pub fn values(&self, array: &Array) -> Result<Vec<f64>, String> {
+        let piece = self.pieces.get(array.piece).copied().unwrap_or_default();
+        let rows = match array.section {
+            Section::Place | Section::PointData => piece[0],
+            Section::CellData | Section::Cells => piece[1],
+            Section::FieldData => {
+                array.tuples.ok_or_else(|| format!("array `{}` does not say its length", array.name))?
+            }
+        };
+        let count = rows.checked_mul(array.components).ok_or("it claims more points than there are numbers")?;
+        self.counted(array, count)
+    }
+
+    /// The numbers of an array that has so many.
+    ///
+    /// # Errors
+    /// Another number of numbers; bytes that cannot be decoded.
+    pub fn counted(&self, array: &Array, count: usize) -> Result<Vec<f64>, String> {
+        let appended = self.appended.map(|(at, raw)| (&self.bytes[at..], raw));
+        let named = |why: String| format!("array `{}`: {why}", array.name);
+        let coding = &self.coding;
+        let values = match (array.format, appended) {
+            (Format::Text, _) => coding.text(&array.text, count),
+            (Format::Base64, _) => coding.base64(&array.text, array.number, count),
+            (Format::Appended(_), None) => Err("it is appended, and the file has no appended data".to_owned()),
+            (Format::Appended(at), Some((all, raw))) => match (all.get(at..), raw) {
+                (None, _) => Err(format!("it begins at byte {at} of the appended data, behind their end")),
+                (Some(rest), true) => coding.raw(rest, array.number, count),
+                (Some(rest), false) => coding.base64(rest, array.number, count),
+            },
+        };
+        values.map_err(named)
+    }
+
+    /// Goes through the document.
+    fn walk(&mut self) -> Result<(), String> {
+        let bytes = self.bytes;
+        let mut reader = Reader::from_reader(bytes);
+        loop {
+            let event = reader.read_event().map_err(|why| format!("byte {}: {why}", reader.error_position()))?;
+            match event {
+                Event::Start(element) => {
+                    self.open(&element)?;
+                    let raw = self.is_appended(&element)?;
+                    self.path.push(element.name().as_ref().to_vec());
+                    if let Some(raw) = raw {
+                        let start = usize::try_from(reader.buffer_position()).map_err(|why| why.to_string())?;
+                        let mark = bytes[start..].iter().position(|byte| *byte == b'_');
+                        let mark = mark.ok_or("the appended data have no `_` at their start")?;
+                        self.appended = Some((start + mark + 1, raw));
+                        // What follows may be any bytes.
+                        return Ok(());
+                    }
+                }
+                Event::Empty(element) => self.open(&element)?,
+                Event::End(_) => drop(self.path.pop()),
+                Event::Text(text) if self.is_in_array() => {
+                    if let Some(array) = self.arrays.last_mut() {
+                        array.text.extend_from_slice(&text);
+                    }
+                }
+                Event::Eof => return Ok(()),
+                _ => {}
+            }
         }
+    }
+
+    /// Whether a text stands in the last array that was begun, and that array is one that is read.
+    fn is_in_array(&self) -> bool {
+        let Some((last, above)) = self.path.split_last() else { return false };
+        let section = self.section(above);
+        last == b"DataArray"
+            && !self.skipped
+            && section.is_some()
+            && self.arrays.last().map(|array| array.section) == section
+    }
+
+    /// The section of an array at this path, if it is one that is read.
+    fn section(&self, path: &[Vec<u8>]) -> Option<Section> {
+        let names: Vec<&[u8]> = path.iter().map(Vec::as_slice).collect();
+        let section = match names[..] {
+            [b"VTKFile", b"UnstructuredGrid", b"Piece", b"Points"] => Section::Place,
+            [b"VTKFile", b"UnstructuredGrid", b"Piece", b"PointData"] => Section::PointData,
+            [b"VTKFile", b"UnstructuredGrid", b"Piece", b"Cells"] => Section::Cells,
+            [b"VTKFile", b"UnstructuredGrid", b"Piece", b"CellData"] => Section::CellData,
+            [b"VTKFile", b"UnstructuredGrid", b"FieldData"] => Section::FieldData,
+            _ => return None,
+        };
+        self.wanted.contains(&section).then_some(section)
     }
 
     /// Looks at an element that begins here.
@@ -167,13 +238,19 @@ impl Document {
             return self.root(name, element);
         }
         if name == b"Piece" && self.path.len() == 2 {
-            let points = attribute(element, "NumberOfPoints")?.ok_or("a piece does not say its NumberOfPoints")?;
-            self.points = points.trim().parse().map_err(|_| format!("NumberOfPoints is `{points}`, not a number"))?;
+            let number = |name: &str| match attribute(element, name)? {
+                None if name == "NumberOfCells" => Ok(0),
+                None => Err(format!("a piece does not say its {name}")),
+                Some(text) => text.trim().parse().map_err(|_| format!("{name} is `{text}`, not a number")),
+            };
+            self.pieces.push([number("NumberOfPoints")?, number("NumberOfCells")?]);
         } else if name == b"DataArray"
-            && let Some(is_place) = self.section(&self.path)
+            && let Some(section) = self.section(&self.path)
         {
-            let array = self.array(element, is_place)?;
-            self.arrays.push(array);
+            match self.array(element, section)? {
+                Some(array) => (self.skipped, _) = (false, self.arrays.push(array)),
+                None => self.skipped = true,
+            }
         }
         Ok(())
     }
@@ -181,7 +258,10 @@ impl Document {
     fn root(&mut self, name: &[u8], element: &BytesStart) -> Result<(), String> {
         let kind = attribute(element, "type")?.unwrap_or_default();
         if name != b"VTKFile" || kind != "UnstructuredGrid" {
-            return Err("it is not an unstructured grid".to_owned());
+            return Err(match &kind[..] {
+                "" => "it is not an unstructured grid".to_owned(),
+                kind => format!("it is not an unstructured grid but `{kind}`"),
+            });
         }
         let texts = ["byte_order", "header_type", "compressor"];
         let [order, header, compressor] = texts.map(|name| attribute(element, name));
@@ -189,26 +269,35 @@ impl Document {
         Ok(())
     }
 
-    fn array(&self, element: &BytesStart, is_place: bool) -> Result<Array, String> {
+    /// The array of an element; none where its type is not one of numbers, and it is not needed.
+    fn array(&self, element: &BytesStart, section: Section) -> Result<Option<Array>, String> {
         let text = |name: &str| attribute(element, name);
-        let number = |name: &str, usual: usize| match text(name)? {
-            None => Ok(usual),
-            Some(text) => text.trim().parse::<usize>().map_err(|_| format!("{name} is `{text}`, not a number")),
+        let number = |name: &str| match text(name)? {
+            None => Ok(None),
+            Some(text) => {
+                text.trim().parse::<usize>().map(Some).map_err(|_| format!("{name} is `{text}`, not a number"))
+            }
         };
-        let components = number("NumberOfComponents", if is_place { 3 } else { 1 })?;
+        let is_place = section == Section::Place;
+        let components = number("NumberOfComponents")?.unwrap_or(if is_place { 3 } else { 1 });
         if is_place && components != 3 {
             return Err(format!("its points have {components} coordinates, not 3"));
         }
+        let kind = text("type")?.unwrap_or_default();
+        let data = [Section::CellData, Section::FieldData].contains(&section);
+        let number_type = match Number::of(&kind) {
+            None if data => return Ok(None),
+            found => found.ok_or_else(|| format!("the type `{kind}` of an array is not known"))?,
+        };
         let format = match text("format")?.as_deref() {
             Some("ascii") => Format::Text,
             Some("binary") => Format::Base64,
-            Some("appended") => Format::Appended(number("offset", 0)?),
+            Some("appended") => Format::Appended(number("offset")?.unwrap_or(0)),
             other => return Err(format!("the format of an array is {other:?}: ascii, binary and appended are known")),
         };
-        let kind = text("type")?.unwrap_or_default();
-        let number = Number::of(&kind).ok_or_else(|| format!("the type `{kind}` of an array is not known"))?;
-        let name = text("Name")?.unwrap_or_else(|| "points".to_owned());
-        Ok(Array { is_place, points: self.points, name, number, components, format, text: Vec::new() })
+        let (name, tuples) = (text("Name")?.unwrap_or_else(|| "points".to_owned()), number("NumberOfTuples")?);
+        let piece = self.pieces.len().saturating_sub(1);
+        Ok(Some(Array { section, piece, name, number: number_type, components, tuples, format, text: Vec::new() }))
     }
 
     /// Whether the element begins the appended data, and then whether these are raw.
@@ -222,21 +311,4 @@ impl Document {
             other => Err(format!("the appended data are encoded by {other:?}: raw and base64 are known")),
         }
     }
-}
-
-/// An attribute of an element; the first of its name.
-fn attribute(element: &BytesStart, name: &str) -> Result<Option<String>, String> {
-    let mut found = None;
-    // A check for names that are there twice takes the square of their number.
-    for (k, attribute) in element.attributes().with_checks(false).enumerate() {
-        if k >= ATTRIBUTES {
-            return Err(format!("an element has more than {ATTRIBUTES} attributes"));
-        }
-        let attribute = attribute.map_err(|why| why.to_string())?;
-        if attribute.key.as_ref() == name.as_bytes() && found.is_none() {
-            let text = std::str::from_utf8(&attribute.value).map_err(|_| format!("{name} is not UTF-8 text"))?;
-            found = Some(quick_xml::escape::unescape(text).map_err(|why| why.to_string())?.into_owned());
-        }
-    }
-    Ok(found)
 }

@@ -5,9 +5,12 @@
 //! shared nodes. The numbers of `name.xdmf` are in `name.h5`, as DOLFINx expects.
 
 mod mesh;
+mod names;
+mod read;
 mod series;
 
-pub use mesh::{write_boundary, write_mesh};
+pub use mesh::{write_all, write_boundary, write_mesh};
+pub use read::{File, REMEDY, beside};
 pub use series::Series;
 
 use std::path::{Path, PathBuf};
@@ -26,7 +29,7 @@ type Xml = Writer<Vec<u8>>;
 type Written = std::io::Result<()>;
 
 /// Path of the HDF5 file beside an XDMF file. A store of the pipeline (such as `mesh.h5` of a run) is never replaced.
-fn companion(path: &Path) -> Result<PathBuf> {
+pub(crate) fn companion(path: &Path) -> Result<PathBuf> {
     let h5 = path.with_extension("h5");
     if h5 == path || path.file_name().is_none_or(|n| n.to_string_lossy().contains(':')) {
         return Err(Error::output(path, "an XDMF file needs a name that ends in .xdmf and has no colon"));
@@ -76,22 +79,27 @@ fn uniform_grid(
     (cells, nodes, points): (usize, usize, usize),
     more: impl FnOnce(&mut Xml) -> Written,
 ) -> Written {
-    let kind = if nodes == 2 { "Polyline" } else { "Quadrilateral" };
-    let (count, size) = (cells.to_string(), nodes.to_string());
-    let topology = [("TopologyType", kind), ("NumberOfElements", count.as_str()), ("NodesPerElement", size.as_str())];
     let part = |part: &str| format!("{name}/{part}");
     let (topology_name, geometry_name) = (part("topology"), part("geometry"));
     let integers = Item { file, name: &topology_name, shape: &[cells, nodes], number: ("Int", "8") };
     let reals = Item { file, name: &geometry_name, shape: &[points, 2], number: ("Float", "8") };
     xml.create_element("Grid").with_attributes([("Name", name), ("GridType", "Uniform")]).write_inner_content(
         |xml| {
-            xml.create_element("Topology").with_attributes(topology).write_inner_content(|xml| item(xml, &integers))?;
+            topology(xml, nodes, cells, &integers)?;
             let geometry = xml.create_element("Geometry").with_attribute(("GeometryType", "XY"));
             geometry.write_inner_content(|xml| item(xml, &reals))?;
             more(xml)
         },
     )?;
     Ok(())
+}
+
+/// The cells of a grid, of `nodes` nodes each.
+fn topology(xml: &mut Xml, nodes: usize, cells: usize, values: &Item) -> Written {
+    let kind = if nodes == 2 { "Polyline" } else { "Quadrilateral" };
+    let (count, size) = (cells.to_string(), nodes.to_string());
+    let attributes = [("TopologyType", kind), ("NumberOfElements", count.as_str()), ("NodesPerElement", size.as_str())];
+    xml.create_element("Topology").with_attributes(attributes).write_inner_content(|xml| item(xml, values)).map(drop)
 }
 
 /// An attribute (a field) of a grid.

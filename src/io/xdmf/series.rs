@@ -11,6 +11,9 @@ use crate::io::pending::Pending;
 use crate::io::provenance::Provenance;
 use crate::io::seal;
 
+/// The name of the collection.
+pub const SERIES: &str = "series";
+
 /// A series that is being written; its files appear at [`Series::finish`].
 pub struct Series {
     path: PathBuf,
@@ -113,7 +116,7 @@ impl Series {
         write_document(&path, |xml| {
             let size = |grid: usize| (grids[grid].0 * split, 4, grids[grid].1);
             uniform_grid(xml, (&file, "mesh"), size(0), |_| Ok(()))?;
-            let names = [("Name", "series"), ("GridType", "Collection"), ("CollectionType", "Temporal")];
+            let names = [("Name", SERIES), ("GridType", "Collection"), ("CollectionType", "Temporal")];
             let collection = xml.create_element("Grid").with_attributes(names);
             if steps.is_empty() {
                 return collection.write_empty().map(drop);

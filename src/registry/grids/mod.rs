@@ -93,7 +93,7 @@ pub static GRIDS: Table<Grid> = Table::new(&[
     Entry {
         name: "mesh",
         about: "a mesh file, or a list of files that are used one after the other",
-        parameters: &[Parameter::required("mesh", "Gmsh or .h5 files", "", Form::Texts)],
+        parameters: &[Parameter::required("mesh", "files of Gmsh, .vtu, .xdmf or .h5", "", Form::Texts)],
         check: ANY,
         build: Grid { files: Some(files::MESHES), check: files::check, ..by(files::make) },
     },

@@ -1,6 +1,8 @@
 //! MSH files from Gmsh itself: each format gives the same mesh, each bad file is refused with its reason, and no
 //! sequence of bytes makes the reader panic. The geometry of the good one is `tests/data/gmsh/two_surfaces.geo`.
 
+mod others;
+
 use std::path::{Path, PathBuf};
 
 use dgmpm::parts::io::gmsh;

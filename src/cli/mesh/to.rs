@@ -1,0 +1,29 @@
+//! Where a mesh goes.
+
+use crate::cli::output::keep;
+use crate::error::Result;
+use std::path::{Path, PathBuf};
+
+/// Where a mesh goes.
+#[derive(Debug, clap::Args)]
+pub struct To {
+    /// Where to write: .h5, .msh for Gmsh, .xdmf for DOLFINx [default: the input's name with .h5 (_mesh.h5 for .xdmf), or rectangle.h5]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Replace the file
+    #[arg(long)]
+    pub force: bool,
+}
+
+impl To {
+    /// Where the mesh that is read from a file goes, with the file beside it not in the way. The `.h5` of an XDMF file has its numbers.
+    pub fn path(&self, from: &Path) -> Result<PathBuf> {
+        let of_xdmf = from.extension().is_some_and(|ending| ending == "xdmf" || ending == "xmf");
+        let stem = from.file_stem().unwrap_or_default().to_string_lossy();
+        let default = || from.with_file_name(if of_xdmf { format!("{stem}_mesh.h5") } else { format!("{stem}.h5") });
+        let out = self.out.clone().unwrap_or_else(default);
+        keep(&out, self.force)?;
+        let beside = out.extension().is_some_and(|ending| ending == "xdmf").then(|| out.with_extension("h5"));
+        beside.map_or(Ok(()), |beside| keep(&beside, self.force)).map(|()| out)
+    }
+}

@@ -1,0 +1,86 @@
+"""Writes a mesh of Gmsh by meshio and VTK, in each mode of VTU and XDMF that they have. The test compares what dgmpm reads with the mesh.
+
+Usage: mesh_files.py MESH FOLDER
+"""
+import sys
+from pathlib import Path
+
+import meshio
+import numpy as np
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk
+
+
+def by_meshio(mesh, folder):
+    """All modes of meshio; its text of VTU has 12 digits only."""
+    meshio.vtu.write(folder / "text_12_digits.vtu", mesh, binary=False)
+    for compression in ("none", "zlib", "lzma"):
+        for header in ("UInt32", "UInt64"):
+            options = {"compression": None if compression == "none" else compression, "header_type": header}
+            meshio.vtu.write(folder / f"meshio_{compression}_{header}.vtu", mesh, binary=True, **options)
+    for kind in ("HDF", "XML"):
+        meshio.xdmf.write(folder / f"meshio_{kind}.xdmf", mesh, data_format=kind)
+    # As the tutorials of DOLFINx say: cells and facets in two files.
+    for name, kind, plane in (("cells", "quad", True), ("facets", "line", False)):
+        points = mesh.points[:, :2] if plane else mesh.points
+        tags = mesh.get_cell_data("gmsh:physical", kind)
+        part = meshio.Mesh(points, {kind: mesh.get_cells_type(kind)}, cell_data={"name_to_read": [tags]})
+        meshio.write(folder / f"{name}.xdmf", part)
+
+
+def grid_of(mesh):
+    """The mesh as an unstructured grid of VTK, with the names of groups as field data."""
+    grid, points = vtk.vtkUnstructuredGrid(), vtk.vtkPoints()
+    points.SetDataTypeToDouble()
+    for x in mesh.points:
+        points.InsertNextPoint(x)
+    grid.SetPoints(points)
+    kinds = {"line": vtk.VTK_LINE, "quad": vtk.VTK_QUAD}
+    for block in mesh.cells:
+        for nodes in block.data:
+            grid.InsertNextCell(kinds[block.type], len(nodes), [int(node) for node in nodes])
+    tags = numpy_to_vtk(np.concatenate(mesh.cell_data["gmsh:physical"]).astype(np.int32), deep=True)
+    tags.SetName("gmsh:physical")
+    grid.GetCellData().AddArray(tags)
+    for name, pair in mesh.field_data.items():
+        array = numpy_to_vtk(np.asarray(pair, np.int64), deep=True)
+        array.SetName(name)
+        grid.GetFieldData().AddArray(array)
+    return grid
+
+
+def by_vtk(mesh, folder):
+    """All modes of VTK but for lz4."""
+    grid = grid_of(mesh)
+    for mode in ("ascii", "binary", "appended_raw", "appended_base64"):
+        for compression in ("none", "zlib", "lzma"):
+            if mode == "ascii" and compression != "none":
+                continue
+            for header in (32, 64):
+                for order in ("little", "big"):
+                    writer = vtk.vtkXMLUnstructuredGridWriter()
+                    writer.SetFileName(str(folder / f"vtk_{mode}_{compression}_{header}_{order}.vtu"))
+                    writer.SetInputData(grid)
+                    modes = {"ascii": vtk.vtkXMLWriter.Ascii, "binary": vtk.vtkXMLWriter.Binary}
+                    writer.SetDataMode(modes.get(mode, vtk.vtkXMLWriter.Appended))
+                    writer.SetEncodeAppendedData(mode == "appended_base64")
+                    writer.SetCompressorType({"none": 0, "zlib": 1, "lzma": 3}[compression])
+                    writer.SetHeaderType(header)
+                    writer.SetByteOrder(0 if order == "big" else 1)
+                    # Several blocks, the last of which is not full.
+                    writer.SetBlockSize(256)
+                    assert writer.Write() == 1
+
+
+def main(path, folder):
+    mesh = meshio.read(path)
+    # meshio 5.3.5 fails where it makes numbers of these for VTU.
+    mesh.cell_sets = {}
+    by_meshio(mesh, folder)
+    by_vtk(mesh, folder)
+    print(f"{len(list(folder.glob('*.vtu')))} .vtu and {len(list(folder.glob('*.xdmf')))} .xdmf files")
+
+
+if __name__ == "__main__":
+    assert len(sys.argv) == 3, __doc__
+    main(sys.argv[1], Path(sys.argv[2]))
