@@ -4,6 +4,7 @@
 //! mesh is checked by [`Scene::check_mesh`]. Every message has file, line and column (or the `--set` at fault)
 //! and lists what exists. A scene knows neither mesh nor solver: names become types elsewhere. Units are SI.
 
+pub mod draft;
 mod given;
 mod groups;
 mod load;
