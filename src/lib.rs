@@ -111,6 +111,7 @@ mod expression;
 pub mod registry;
 mod scene;
 mod problem;
+mod info;
 mod stability;
 mod study;
 mod bench;
