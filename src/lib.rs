@@ -112,6 +112,7 @@ pub mod registry;
 mod scene;
 mod problem;
 mod info;
+mod picture;
 mod stability;
 mod study;
 mod bench;

@@ -45,6 +45,7 @@ mod rebuild;
 mod record;
 mod resume;
 pub mod room;
+pub mod series;
 mod solve;
 mod start;
 mod stopped;
