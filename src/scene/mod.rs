@@ -18,6 +18,7 @@ mod read;
 mod reader;
 mod reference;
 pub mod regrid;
+pub mod schema;
 mod sets;
 mod tables;
 mod times;
