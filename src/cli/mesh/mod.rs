@@ -3,8 +3,9 @@
 mod args;
 
 use super::output::keep;
-use super::print::{note, say, table};
+use super::print::{note, result, say, table};
 use crate::error::{Error, Place, Result};
+use crate::info::Info;
 use crate::io::{read_mesh, write_mesh};
 use crate::mesh::{Link, Mesh, links, rectangle};
 use crate::problem::{notices, room::check_mesh};
@@ -17,8 +18,9 @@ pub use args::Args;
 pub fn run(args: &Args) -> Result<()> {
     match (&args.action, &args.file) {
         (Some(Action::Info { file }), _) => {
-            let mesh = read_mesh(file)?;
-            info(&mesh, &links_of(&mesh, file)?);
+            let (info, mesh) = (Info::of(file)?, read_mesh(file)?);
+            result(&mesh.rows(), &info.json());
+            notices::of_mesh(&mesh, &links_of(&mesh, file)?).iter().for_each(note);
             Ok(())
         }
         (Some(Action::Rectangle { size, cells, to }), _) => {
