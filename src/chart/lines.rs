@@ -175,6 +175,7 @@ impl Chart {
         let label = |scale: Scale| move |x: &f64| if scale == Scale::Log { format!("{x:.0e}") } else { round(*x) };
         chart
             .configure_mesh()
+            .max_light_lines(if self.scales.contains(&Scale::Log) { 10 } else { 1 })
             .bold_line_style(RGBColor(205, 205, 205))
             .light_line_style(RGBColor(240, 240, 240))
             .x_desc(&self.x)
@@ -215,7 +216,11 @@ impl Chart {
 /// A range around numbers, with a margin of a twentieth. It is never empty.
 fn around(values: &mut dyn Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-    let margin = if high > low { 0.05 * (high - low) } else { 0.05 * high.abs().max(1e-12) };
+    let margin = match () {
+        () if high > low => 0.05 * (high - low),
+        () if high == 0.0 => 1.0,
+        () => 0.05 * high.abs(),
+    };
     (low - margin, high + margin)
 }
 

@@ -91,7 +91,7 @@ impl Map {
         let small = (FONT, 16).into_text_style(area).color(&DARK);
         for axis in 0..2 {
             let [low, high] = [0, 1].map(|end| self.window[end][axis] / self.unit);
-            let room = [width / 90, height / 60][axis].clamp(1, 8) as usize;
+            let room = [width / 90, height / 36][axis].clamp(2, 8) as usize;
             for (value, label) in ticks([low, high], room) {
                 let place = self.place([0, 1].map(|k| if k == axis { value * self.unit } else { 0.0 }));
                 let (at, out) = match axis {
@@ -127,7 +127,7 @@ impl Map {
         area.draw(&Rectangle::new([(left, top), (right, top + height)], DARK.stroke_width(1))).map_err(text)?;
         let style = (FONT, 16).into_text_style(area).color(&DARK).pos(Pos::new(HPos::Left, VPos::Center));
         let [low, high] = self.bar.range;
-        for (value, label) in ticks([low, high], (height / 55).clamp(2, 8) as usize) {
+        for (value, label) in ticks([low, high], (height / 36).clamp(4, 8) as usize) {
             let y = top + height - (f64::from(height) * (value - low) / (high - low)).round() as i32;
             area.draw(&PathElement::new(vec![(right, y), (right + 6, y)], DARK.stroke_width(1))).map_err(text)?;
             area.draw(&Text::new(label, (right + 10, y), style.clone())).map_err(text)?;

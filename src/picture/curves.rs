@@ -1,6 +1,6 @@
 //! Curves of the tables of a run: energy and momentum over time, numbers through time, samples along lines.
 
-use super::unit::{label, prefixed};
+use super::unit::{label, prefixed, short};
 use crate::chart::{Chart, Line, Marker, Panels, Scale, Stroke, save};
 use crate::error::{Error, Place, Result};
 use crate::file;
@@ -172,9 +172,15 @@ fn panels(name: &str, x: (&str, &str), curves: Vec<Curve>, key: impl Fn(&Curve) 
             None => groups.push((key, vec![curve])),
         }
     }
-    let of = |(key, group): (String, Vec<Curve>)| {
+    let of = |(_, group): (String, Vec<Curve>)| {
         let unit = group.first().map_or_else(String::new, |curve| curve.1.clone());
-        let title = if key == unit { name.to_owned() } else { format!("{name}: {key}") };
+        // A field where all curves are its components.
+        let mut fields = group.iter().map(|curve| field_of(&curve.0));
+        let first = fields.next().unwrap_or_default().to_owned();
+        let title = match fields.all(|field| field == first) && group.iter().any(|curve| curve.0 != name) {
+            true => format!("{name}: {}", first.replace('_', " ")),
+            false => name.to_owned(),
+        };
         panel(&title, x, &unit, group.into_iter().map(|(name, _, points)| (name, points)).collect())
     };
     groups.into_iter().filter_map(of).collect()
@@ -202,7 +208,7 @@ fn samples(name: &str, table: &Table) -> Vec<Chart> {
     let all: Vec<(usize, &String)> = table.columns.iter().enumerate().collect();
     let curve = |(k, column): &(usize, &String)| ((*column).clone(), unit_of(column).to_owned(), at_end.points(s, *k));
     let curves = all.iter().filter(is_field).map(curve).collect();
-    let name = format!("{name}, t = {:.4} {unit}", last / size);
+    let name = format!("{name}, t = {} {unit}", short(last / size));
     panels(&name, ("s", "m"), curves, |curve| field_of(&curve.0).replace('_', " "))
 }
 

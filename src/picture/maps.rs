@@ -1,7 +1,7 @@
 //! Maps of the fields of snapshots, on the deformed body or on the initial one.
 
 use super::field::Shade;
-use super::unit::{label, prefixed};
+use super::unit::{label, prefixed, short};
 use crate::chart::{Bar, Corner, Map, save};
 use crate::error::{Error, Result};
 use crate::mesh::faces::neighbours;
@@ -155,7 +155,7 @@ impl Maps {
         let (time_unit, time) = prefixed("s", shown.time);
         let is_deformed = !self.is_initial && shown.solution.has_displacement();
         let shape = if is_deformed { "deformed body" } else { "initial body" };
-        let about = format!("t = {:.4} {time_unit}, step {}, {shape}", shown.time / time, shown.step);
+        let about = format!("t = {} {time_unit}, step {}, {shape}", short(shown.time / time), shown.step);
         let bar = Bar { palette: shade.palette, range: range.map(|x| x / size) };
         let mut map = Map::new(label(&shade.title, &unit), about, bar, frame.window);
         let largest = frame.window.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));

@@ -84,6 +84,11 @@ fn rounded_up(x: f64) -> f64 {
     format!("{}e{decade}", (x / 10_f64.powi(decade)).ceil()).parse().unwrap_or(x)
 }
 
+/// Four digits of a number.
+fn four_digits(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}
+
 /// A mesh with those of its groups that lie on the boundary.
 struct Shape<'a> {
     mesh: &'a Mesh,
@@ -230,7 +235,12 @@ impl Shape<'_> {
         let (speed, letter) = (Self::speed(), ["x", "y"][axis]);
         let middle = 0.5 * (gap[0] + gap[1]);
         let mut velocity = ["0".to_owned(), "0".to_owned()];
-        velocity[axis] = format!("{speed} - {}*step({letter} - ({}))", 2.0 * speed, number(middle));
+        let line = if middle < 0.0 {
+            format!("{letter} + {}", number(-middle))
+        } else {
+            format!("{letter} - {}", number(middle))
+        };
+        velocity[axis] = format!("{speed} - {}*step({line})", 2.0 * speed);
         let title = "Two bodies of steel fly against each other".to_owned();
         let what = format!("Each moves towards the other, at {} of its wave speed.", "a hundredth");
         let delay = (gap[1] - gap[0]).max(0.0) / (2.0 * speed);
@@ -288,7 +298,7 @@ impl Story {
             boundaries: self.conditions,
             velocity: (self.velocity, self.what),
             end: (end, capital(&why)),
-            every: end / SNAPSHOTS,
+            every: four_digits(end / SNAPSHOTS),
             force: self.hit,
             probe: (point, "In the cell at the far end.".to_owned()),
         }
@@ -299,4 +309,45 @@ impl Story {
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::rectangle;
+
+    #[test]
+    fn numbers_are_round() {
+        assert_eq!([58.7, 20.0, 1.99, 0.051].map(rounded_down), [50.0, 20.0, 1.0, 0.05]);
+        assert_eq!([6.81e-4, 1.0, 1.001].map(rounded_up), [6.9e-4, 1.0, 1.1]);
+    }
+
+    #[test]
+    fn edges_without_a_group_get_one_and_others_keep_theirs() {
+        let mut mesh = rectangle([2.0, 1.0], [2, 2]).unwrap();
+        let right = mesh.edge_groups.iter().position(|name| name == "right").unwrap();
+        mesh.edges.retain(|edge| edge.group != right);
+        let (mesh, count) = tagged(mesh).unwrap();
+        assert_eq!((count, mesh.edge_groups.last().unwrap().as_str()), (2, "boundary"));
+        let (again, count) = tagged(mesh.clone()).unwrap();
+        assert_eq!((count, again), (0, mesh));
+    }
+
+    #[test]
+    fn a_wall_is_at_a_straight_side_and_a_body_that_has_none_meets_a_half_plane() {
+        let mesh = rectangle([2.0, 1.0], [2, 2]).unwrap();
+        let first = draft(&mesh, "a.msh").unwrap();
+        let kind = |draft: &Draft, group: &str| draft.boundaries.iter().find(|b| b.group == group).unwrap().kind;
+        assert_eq!([kind(&first, "left"), kind(&first, "right")], ["unilateral", "free"]);
+        // A wave of the steel goes through 2 m in .34 ms; the end is 4 times that.
+        assert!((first.end.0 - 1.4e-3).abs() < 1e-12 && first.velocity.0 == ["-50.0", "0"], "{first:?}");
+        // One group around the body is not straight.
+        let mut one = mesh.clone();
+        one.edge_groups = vec!["all".to_owned()];
+        one.edges.iter_mut().for_each(|edge| edge.group = 0);
+        assert_eq!(kind(&draft(&one, "a.msh").unwrap(), "all"), "half-plane");
+        let mut none = mesh;
+        (none.edges, none.edge_groups) = (vec![], vec![]);
+        assert!(draft(&none, "a.msh").is_err());
+    }
 }
