@@ -224,8 +224,11 @@ fn around(values: &mut dyn Iterator<Item = f64>) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// A number of a linear axis, without the last digits of its rounding.
+/// A number of a linear axis, without the last digits of its rounding; numbers have units in which they are not far from 1.
 fn round(x: f64) -> String {
+    if x.abs() < 1e-13 {
+        return "0".to_owned();
+    }
     let digits = format!("{x:.3e}").parse::<f64>().unwrap_or(x);
     if digits != 0.0 && digits.abs() < 1e-3 { format!("{digits:e}") } else { digits.to_string() }
 }

@@ -172,7 +172,8 @@ pub fn ticks([low, high]: [f64; 2], count: usize) -> Vec<(f64, String)> {
         return vec![];
     }
     let decade = 10_f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|k| k * decade >= rough * 0.999).unwrap_or(10.0) * decade;
+    let nearest = [(1.5, 1.0), (3.5, 2.0), (7.5, 5.0)].into_iter().find(|(end, _)| rough < end * decade);
+    let step = nearest.map_or(10.0, |(_, step)| step) * decade;
     let digits = (-(step.log10() + 1e-9).floor()).max(0.0) as usize;
     let label = |value: f64| match digits <= 6 && low.abs().max(high.abs()) < 1e6 {
         true => format!("{:.digits$}", value + 0.0),

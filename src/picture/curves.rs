@@ -14,8 +14,11 @@ const MOST: usize = 7;
 /// Points of a curve: more would fall on the same pixels.
 const POINTS: usize = 3000;
 
-/// The panels of the ledger: title, unit, columns with their names in the legend.
-const LEDGER: [(&str, &str, &[(&str, &str)]); 4] = [
+/// A panel of the ledger: title, unit, columns with their names in the legend.
+type Part = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
+
+/// The panels of the ledger.
+const LEDGER: [Part; 4] = [
     (
         "Energy of the body",
         "J/m",
@@ -49,8 +52,14 @@ struct Table {
     rows: Vec<Vec<f64>>,
 }
 
+/// The points of a curve.
+type Points = Vec<(f64, f64)>;
+
+/// A curve with its name.
+type Named = (String, Points);
+
 /// A curve before it has a place: its name, its unit, its points.
-type Curve = (String, String, Vec<(f64, f64)>);
+type Curve = (String, String, Points);
 
 /// Draws the tables of a run into a folder, in the format of this ending. Answers the files.
 ///
@@ -114,7 +123,7 @@ impl Table {
     }
 
     /// The points of a column over another one, without gaps, thinned to what a picture shows.
-    fn points(&self, x: usize, y: usize) -> Vec<(f64, f64)> {
+    fn points(&self, x: usize, y: usize) -> Points {
         let all: Vec<(f64, f64)> =
             self.rows.iter().map(|row| (row[x], row[y])).filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
         let step = all.len().div_ceil(POINTS).max(1);
@@ -124,13 +133,13 @@ impl Table {
 }
 
 /// A panel of curves that share a unit; none where there is nothing to show.
-fn panel(title: &str, x: (&str, &str), unit: &str, curves: Vec<(String, Vec<(f64, f64)>)>) -> Option<Chart> {
+fn panel(title: &str, x: (&str, &str), unit: &str, curves: Vec<Named>) -> Option<Chart> {
     let curves: Vec<_> = curves.into_iter().filter(|(_, points)| points.len() > 1).take(MOST).collect();
     let largest = |of: fn(&(f64, f64)) -> f64| {
         curves.iter().flat_map(|(_, points)| points).map(of).fold(0.0, |most: f64, x| most.max(x.abs()))
     };
     let ((x_unit, x_size), (y_unit, y_size)) = (prefixed(x.1, largest(|p| p.0)), prefixed(unit, largest(|p| p.1)));
-    let line = |(k, (name, points)): (usize, &(String, Vec<(f64, f64)>))| Line {
+    let line = |(k, (name, points)): (usize, &Named)| Line {
         name: name.clone(),
         colour: [2, 4, 3, 5, 1, 6, 0][k % MOST],
         marker: Marker::Bare,
@@ -144,11 +153,11 @@ fn panel(title: &str, x: (&str, &str), unit: &str, curves: Vec<(String, Vec<(f64
 
 fn ledger(table: &Table) -> Vec<Chart> {
     let Some(t) = table.place("t") else { return vec![] };
-    let of = |(title, unit, columns): &(&str, &str, &[(&str, &str)])| {
+    let of = |(title, unit, columns): &Part| {
         let curve = |(column, name): &(&str, &str)| Some(((*name).to_owned(), table.points(t, table.place(column)?)));
         let curves: Vec<_> = columns.iter().filter_map(curve).collect();
         // What is 0 all the time says nothing.
-        let speaks = |(_, points): &(String, Vec<(f64, f64)>)| points.iter().any(|(_, y)| *y != 0.0);
+        let speaks = |(_, points): &Named| points.iter().any(|(_, y)| *y != 0.0);
         panel(title, ("t", "s"), unit, curves.into_iter().filter(speaks).collect())
     };
     LEDGER.iter().filter_map(of).collect()

@@ -160,7 +160,7 @@ impl Shape<'_> {
         let (axis, sign, where_to, group) = found?;
         let hit = self.mesh.edge_groups[group].clone();
         let why = "the rigid wall; the body presses on it and may leave it".to_owned();
-        let condition = Condition { group: hit.clone(), kind: "unilateral", keys: vec![("gap", number(0.0))], why };
+        let condition = Condition { group: hit.clone(), kind: "unilateral", keys: vec![], why };
         let conditions = self.conditions(|other| (other == group).then(|| condition.clone()));
         Some(Self::against(axis, sign, where_to, conditions, hit))
     }
