@@ -170,6 +170,12 @@ fn a_scene_of_new_is_complete_and_steps_on_every_mesh() {
         // Some steps: the speed is so small that nothing is lost.
         said(&["run", &format!("{name}.toml"), "--set", "time.end=2e-6", "--set", "scheme.degree=1"], folder);
     }
+    let beam = tempfile::tempdir().unwrap();
+    std::fs::copy(python::root().join("meshes/double_cantilever.msh"), beam.path().join("b.msh")).unwrap();
+    said(&["new", "b.msh", "--out", "scenes/b.toml"], beam.path());
+    let scene = std::fs::read_to_string(beam.path().join("scenes/b.toml")).unwrap();
+    // A crack is not opened unasked.
+    assert!(scene.contains("# \"crack\", \"joint\": these") && scene.contains("file = \"../b.msh\""), "{scene}");
     let discs = tempfile::tempdir().unwrap();
     std::fs::copy(python::root().join("meshes/colliding_discs.msh"), discs.path().join("d.msh")).unwrap();
     said(&["new", "d.msh"], discs.path());

@@ -50,17 +50,23 @@ pub fn tagged(mut mesh: Mesh) -> Result<(Mesh, usize)> {
 /// # Errors
 /// A mesh without a group on its boundary.
 pub fn draft(mesh: &Mesh, file: &str) -> Result<Draft> {
-    let on_boundary: Vec<usize> =
-        mesh.edge_counts().iter().enumerate().filter(|(_, count)| count.boundary > 0).map(|(group, _)| group).collect();
+    let counts = mesh.edge_counts();
+    // A condition on edges inside of the body would cut it there.
+    let of = |is_inside: bool| {
+        let all = counts.iter().enumerate().filter(move |(_, count)| (count.inner > 0) == is_inside);
+        all.filter(move |(_, count)| is_inside || count.boundary > 0).map(|(group, _)| group).collect()
+    };
+    let (on_boundary, inside): (Vec<usize>, Vec<usize>) = (of(false), of(true));
     if on_boundary.is_empty() {
         return Err(Error::input(
             "the mesh has no group of edges on its boundary",
             "name one there (a physical curve)",
         ));
     }
+    let inside = inside.into_iter().map(|group| mesh.edge_groups[group].clone()).collect();
     let shape = Shape { mesh, groups: on_boundary };
     let story = shape.meeting().or_else(|| shape.flat_wall()).unwrap_or_else(|| shape.round_wall());
-    Ok(story.told(&shape, file))
+    Ok(Draft { inside, ..story.told(&shape, file) })
 }
 
 /// The wave speed of the example's material, m/s.
@@ -296,6 +302,7 @@ impl Story {
             mesh: file.to_owned(),
             groups: shape.mesh.groups.clone(),
             boundaries: self.conditions,
+            inside: vec![],
             velocity: (self.velocity, self.what),
             end: (end, capital(&why)),
             every: four_digits(end / SNAPSHOTS),

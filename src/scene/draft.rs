@@ -24,6 +24,8 @@ pub struct Draft {
     pub groups: Vec<String>,
     /// The conditions.
     pub boundaries: Vec<Condition>,
+    /// The groups of edges inside of the body.
+    pub inside: Vec<String>,
     /// The initial velocity, m/s: two expressions, and what it is.
     pub velocity: ([String; 2], String),
     /// The end of the run, and why.
@@ -115,6 +117,13 @@ impl Page {
             self.line(&format!("kind = {}", quoted(kind)), why);
             let parameters = entry.map_or(&[][..], |entry| entry.parameters);
             keys.iter().for_each(|(name, value)| self.key(name, value.clone(), parameters));
+        }
+        if !draft.inside.is_empty() {
+            self.blank();
+            let groups: Vec<String> = draft.inside.iter().map(|group| quoted(group)).collect();
+            let about = "these groups have edges inside of the body, and need no condition. One cuts the body there: a crack (free, contact), or a \
+                         joint that breaks (cohesive).";
+            self.comment(&format!("{}: {about}", groups.join(", ")), "");
         }
     }
 
