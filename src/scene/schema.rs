@@ -176,9 +176,9 @@ fn number(check: &Check) -> Value {
         let [before, at, behind] = [bound - step, bound, bound + step].map(holds);
         match (before, at, behind) {
             (false, true, true) => schema["minimum"] = json!(bound),
-            (false, false, true) => schema["exclusiveMinimum"] = json!(bound),
+            (false, false, true) if !is_whole => schema["exclusiveMinimum"] = json!(bound),
             (true, true, false) => schema["maximum"] = json!(bound),
-            (true, false, false) => schema["exclusiveMaximum"] = json!(bound),
+            (true, false, false) if !is_whole => schema["exclusiveMaximum"] = json!(bound),
             _ => {}
         }
     }

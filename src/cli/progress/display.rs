@@ -18,7 +18,7 @@ pub struct Display {
 impl Display {
     /// A bar at its beginning, or nothing yet.
     pub fn new() -> Self {
-        let style = ProgressStyle::with_template("{bar:14} {percent:>3} % {msg} eta {eta}");
+        let style = ProgressStyle::with_template("{bar:12} {percent:>3} % {msg} eta {eta}");
         let has_bar = std::io::stderr().is_terminal() && manner() == Manner::Plain;
         let bar = has_bar.then(|| ProgressBar::new(TICKS));
         if let (Some(bar), Ok(style)) = (&bar, style) {

@@ -44,8 +44,8 @@ mod tests {
     #[test]
     fn progress_fits_into_a_line_of_80_columns() {
         let now = Now { share: 0.5, step: 999_999, time: 1.234e-10, dt: 1.234e-10, min_j: -1.234 };
-        // A bar of 14, ` 100 % ` and ` eta 59m`: the longest that a terminal of 80 columns shows on one line.
-        let line = format!("{} {:>3} % {} eta 59m", "#".repeat(14), 100, now.words());
+        // A bar of 12, ` 100 % ` and ` eta 59m`: the longest that a terminal of 80 columns shows on one line.
+        let line = format!("{} {:>3} % {} eta 59m", "#".repeat(12), 100, now.words());
         assert!(line.len() <= 80, "{}: {line}", line.len());
         let line = format!("{:5.1} % {} eta {:.0} s", 100.0, now.words(), 99_999.0);
         assert!(line.len() <= 80, "{}: {line}", line.len());
