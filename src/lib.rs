@@ -112,6 +112,8 @@ mod expression;
 pub mod registry;
 mod scene;
 mod problem;
+mod info;
+mod picture;
 mod stability;
 mod study;
 mod bench;

@@ -1,6 +1,6 @@
 //! Charts of lines, on logarithmic or linear axes.
 
-use super::{COLOURS, FONT, SIZE};
+use super::{COLOURS, Drawn, FONT, Picture};
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
@@ -71,19 +71,46 @@ pub struct Chart {
     pub lines: Vec<Line>,
 }
 
+/// Width and height of a chart, pixels.
+const SIZE: (u32, u32) = (900, 620);
+/// Height of one of several charts below each other, pixels.
+const PANEL: u32 = 330;
+
+/// Charts below each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Panels(pub Vec<Chart>);
+
+impl Picture for Panels {
+    fn size(&self) -> (u32, u32) {
+        (SIZE.0, if self.0.len() == 1 { SIZE.1 * 2 / 3 } else { PANEL * self.0.len() as u32 })
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn {
+        let parts = area.split_evenly((self.0.len(), 1));
+        self.0.iter().zip(parts).try_for_each(|(chart, part)| chart.draw(&part))?;
+        area.present().map_err(|why| why.to_string())
+    }
+}
+
+impl Picture for Chart {
+    fn size(&self) -> (u32, u32) {
+        SIZE
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn {
+        self.fill(area)
+    }
+}
+
 impl Chart {
-    /// Draws it on an area of [`SIZE`].
-    ///
-    /// # Errors
-    /// There is nothing to draw, or the backend fails.
-    pub(super) fn draw<B: DrawingBackend>(&self, area: DrawingArea<B, Shift>) -> Result<(), String> {
+    fn fill<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn {
         let text = |why: DrawingAreaErrorKind<B::ErrorType>| why.to_string();
         let all = || self.lines.iter().flat_map(|line| &line.points);
         if all().next().is_none() {
             return Err("nothing was measured: there is nothing to draw".to_owned());
         }
         area.fill(&WHITE).map_err(text)?;
-        let mut builder = ChartBuilder::on(&area);
+        let mut builder = ChartBuilder::on(area);
         builder
             .caption(&self.title, (FONT, 20))
             .margin(12)
@@ -100,17 +127,15 @@ impl Chart {
         let (x, y) = (x.0..x.1, y.0..y.1);
         match self.scales {
             [Scale::Log, Scale::Log] => {
-                self.paint(&area, builder.build_cartesian_2d(x.log_scale(), y.log_scale()).map_err(text)?, decade)
+                self.paint(area, builder.build_cartesian_2d(x.log_scale(), y.log_scale()).map_err(text)?, decade)
             }
             [Scale::Log, Scale::Linear] => {
-                self.paint(&area, builder.build_cartesian_2d(x.log_scale(), y).map_err(text)?, decade)
+                self.paint(area, builder.build_cartesian_2d(x.log_scale(), y).map_err(text)?, decade)
             }
             [Scale::Linear, Scale::Log] => {
-                self.paint(&area, builder.build_cartesian_2d(x, y.log_scale()).map_err(text)?, decade)
+                self.paint(area, builder.build_cartesian_2d(x, y.log_scale()).map_err(text)?, decade)
             }
-            [Scale::Linear, Scale::Linear] => {
-                self.paint(&area, builder.build_cartesian_2d(x, y).map_err(text)?, decade)
-            }
+            [Scale::Linear, Scale::Linear] => self.paint(area, builder.build_cartesian_2d(x, y).map_err(text)?, decade),
         }
     }
 
@@ -126,10 +151,11 @@ impl Chart {
         Y: Ranged<ValueType = f64>,
     {
         let style = (FONT, 14).into_text_style(area).color(&RGBColor(110, 110, 110));
-        let left = chart.plotting_area().get_x_axis_pixel_range().start;
+        let (corner_x, corner_y) = corner(area);
+        let left = chart.plotting_area().get_x_axis_pixel_range().start - corner_x;
         let x = self.lines.iter().flat_map(|line| &line.points).map(|p| p.0).next().unwrap_or(0.0);
         [2.0, 5.0].into_iter().try_for_each(|k| {
-            let height = chart.backend_coord(&(x, k * low)).1;
+            let height = chart.backend_coord(&(x, k * low)).1 - corner_y;
             area.draw(&Text::new(format!("{:.0e}", k * low), (left + 8, height), style.clone()))
         })
     }
@@ -149,6 +175,7 @@ impl Chart {
         let label = |scale: Scale| move |x: &f64| if scale == Scale::Log { format!("{x:.0e}") } else { round(*x) };
         chart
             .configure_mesh()
+            .max_light_lines(if self.scales.contains(&Scale::Log) { 10 } else { 1 })
             .bold_line_style(RGBColor(205, 205, 205))
             .light_line_style(RGBColor(240, 240, 240))
             .x_desc(&self.x)
@@ -162,6 +189,7 @@ impl Chart {
         if let Some(y) = decade {
             self.name_between(area, &chart, y).map_err(text)?;
         }
+        let ((corner_x, corner_y), width) = (corner(area), area.dim_in_pixel().0 as i32);
         for (k, line) in self.lines.iter().enumerate() {
             let colour = COLOURS[line.colour % COLOURS.len()];
             let style = ShapeStyle::from(colour).stroke_width(2);
@@ -173,12 +201,13 @@ impl Chart {
             }
             .map_err(text)?;
             for &point in &line.points {
-                mark(area, line.marker, chart.backend_coord(&point), colour).map_err(text)?;
+                let (x, y) = chart.backend_coord(&point);
+                mark(area, line.marker, (x - corner_x, y - corner_y), colour).map_err(text)?;
             }
-            let at = (SIZE.0 as i32 - 213, 60 + 20 * k as i32);
-            mark(area, line.marker, at, colour).map_err(text)?;
+            let at = (width - 213, 60 + 20 * k as i32);
+            sample(area, line, at, colour).map_err(text)?;
             let style = (FONT, 14).into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
-            area.draw(&Text::new(line.name.clone(), (at.0 + 14, at.1), style)).map_err(text)?;
+            area.draw(&Text::new(line.name.clone(), (at.0 + SAMPLE + 8, at.1), style)).map_err(text)?;
         }
         area.present().map_err(text)
     }
@@ -187,14 +216,49 @@ impl Chart {
 /// A range around numbers, with a margin of a twentieth. It is never empty.
 fn around(values: &mut dyn Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-    let margin = if high > low { 0.05 * (high - low) } else { 0.05 * high.abs().max(1e-12) };
+    let margin = match () {
+        () if high > low => 0.05 * (high - low),
+        () if high == 0.0 => 1.0,
+        () => 0.05 * high.abs(),
+    };
     (low - margin, high + margin)
 }
 
-/// A number of a linear axis, without the last digits of its rounding.
+/// A number of a linear axis, without the last digits of its rounding; numbers have units in which they are not far from 1.
 fn round(x: f64) -> String {
+    if x.abs() < 1e-13 {
+        return "0".to_owned();
+    }
     let digits = format!("{x:.3e}").parse::<f64>().unwrap_or(x);
     if digits != 0.0 && digits.abs() < 1e-3 { format!("{digits:e}") } else { digits.to_string() }
+}
+
+/// Half of the length of the line in a legend, pixels.
+const SAMPLE: i32 = 14;
+
+/// Line and mark of a legend.
+fn sample<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    line: &Line,
+    (x, y): (i32, i32),
+    colour: RGBColor,
+) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+    let style = ShapeStyle::from(colour).stroke_width(2);
+    let (dash, pause) = match line.stroke {
+        Stroke::Full => (2 * SAMPLE, 1),
+        Stroke::Dashed => (7, 5),
+        Stroke::Dotted => (2, 4),
+    };
+    for start in (x - SAMPLE..x + SAMPLE).step_by((dash + pause) as usize) {
+        area.draw(&PathElement::new(vec![(start, y), ((start + dash).min(x + SAMPLE), y)], style))?;
+    }
+    mark(area, line.marker, (x, y), colour)
+}
+
+/// The upper left corner of an area in its picture.
+fn corner<B: DrawingBackend>(area: &DrawingArea<B, Shift>) -> (i32, i32) {
+    let (x, y) = area.get_pixel_range();
+    (x.start, y.start)
 }
 
 /// One point, in pixels.

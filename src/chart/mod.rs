@@ -1,17 +1,23 @@
-//! Charts of lines, as SVG and as PNG.
+//! Pictures as SVG and as PNG: charts of lines, and maps.
 
+mod colour;
 mod lines;
+mod map;
+mod raster;
 
-pub use lines::{Chart, Line, Marker, Scale, Stroke};
+pub use colour::Palette;
+pub use lines::{Chart, Line, Marker, Panels, Scale, Stroke};
+pub use map::{Bar, Map, ticks};
+pub use raster::{Corner, Raster};
 
 use crate::error::{Error, Result};
-use crate::io::pending::Pending;
+use crate::io::pending;
+use base64::Engine;
+use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::path::Path;
 use std::sync::Once;
 
-/// Width and height of a picture, pixels.
-const SIZE: (u32, u32) = (900, 620);
 /// The font of all text.
 const FONT: &str = "sans-serif";
 /// Colours by degree, from 0. Colour-blind readers can tell them apart (Okabe, Ito).
@@ -51,28 +57,64 @@ impl Format {
     }
 }
 
+/// A picture, drawn by any backend.
+pub trait Picture {
+    /// Width and height, pixels.
+    fn size(&self) -> (u32, u32);
+
+    /// Draws it on a white area of its size.
+    ///
+    /// # Errors
+    /// There is nothing to draw, or the backend fails.
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn;
+
+    /// Coloured pixels that are under what is drawn.
+    fn under(&self) -> Option<&Raster> {
+        None
+    }
+}
+
+/// Why something could not be drawn.
+pub type Drawn = std::result::Result<(), String>;
+
 /// Draws a picture into `path`. The ending of the path (`svg`, `png`) gives the format.
 ///
 /// # Errors
 /// Another ending, nothing to draw, or a file that cannot be written.
-pub fn save(chart: &Chart, path: &Path) -> Result<()> {
+pub fn save<P: Picture>(picture: &P, path: &Path) -> Result<()> {
     let format = Format::of(path)?;
     fonts();
-    let pending = Pending::new(path)?;
     let failed = |why: String| Error::output(path, why);
-    if format == Format::Svg {
-        let mut text = String::new();
-        chart.draw(SVGBackend::with_string(&mut text, SIZE).into_drawing_area()).map_err(failed)?;
-        std::fs::write(pending.path(), text).map_err(|why| Error::output(path, why))?;
-    } else {
-        // The bitmap backend takes the format from the ending of the name, and a pending file has no such ending.
-        let mut pixels = vec![255; 3 * SIZE.0 as usize * SIZE.1 as usize];
-        let area = BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area();
-        chart.draw(area).map_err(failed)?;
-        let file = std::fs::File::create(pending.path()).map_err(|why| Error::output(path, why))?;
-        write_png(file, &pixels).map_err(|why| Error::output(path, why))?;
+    let bytes = if format == Format::Svg { svg(picture) } else { png(picture) }.map_err(failed)?;
+    pending::write_bytes(path, &bytes)
+}
+
+fn svg<P: Picture>(picture: &P) -> std::result::Result<Vec<u8>, String> {
+    let mut text = String::new();
+    picture.draw(&SVGBackend::with_string(&mut text, picture.size()).into_drawing_area())?;
+    if let Some(under) = picture.under() {
+        let ([x, y], [width, height]) = (under.at(), under.size());
+        let pixels =
+            encoded(under.pixels(), under.resolution(), png::ColorType::Rgba).map_err(|why| why.to_string())?;
+        let data = base64::engine::general_purpose::STANDARD.encode(pixels);
+        let image = format!(
+            "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" href=\"data:image/png;base64,{data}\"/>\n"
+        );
+        // Behind the first element, `<svg ..>`.
+        let place = text.find('>').map_or(text.len(), |at| at + 1);
+        text.insert_str(place, &image);
     }
-    pending.commit()
+    Ok(text.into_bytes())
+}
+
+fn png<P: Picture>(picture: &P) -> std::result::Result<Vec<u8>, String> {
+    let (width, height) = picture.size();
+    let mut pixels = vec![255; 3 * width as usize * height as usize];
+    if let Some(under) = picture.under() {
+        under.blend(&mut pixels, width as usize);
+    }
+    picture.draw(&BitMapBackend::with_buffer(&mut pixels, (width, height)).into_drawing_area())?;
+    encoded(&pixels, [width, height], png::ColorType::Rgb).map_err(|why| why.to_string())
 }
 
 /// The font comes with the program, because a machine without a desktop has no font.
@@ -84,8 +126,16 @@ fn fonts() {
     });
 }
 
-fn write_png(file: std::fs::File, pixels: &[u8]) -> std::result::Result<(), png::EncodingError> {
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), SIZE.0, SIZE.1);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.write_header()?.write_image_data(pixels)
+fn encoded(
+    pixels: &[u8],
+    [width, height]: [u32; 2],
+    colour: png::ColorType,
+) -> std::result::Result<Vec<u8>, png::EncodingError> {
+    let mut out = Vec::new();
+    let mut encoder = png::Encoder::new(&mut out, width, height);
+    encoder.set_color(colour);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels)?;
+    writer.finish()?;
+    Ok(out)
 }

@@ -1,6 +1,5 @@
 //! The subcommands.
 use super::*;
-use crate::error::Result;
 use clap::Subcommand;
 
 /// A subcommand with its arguments.
@@ -9,6 +8,8 @@ use clap::Subcommand;
 pub enum Command {
     /// Import, make or inspect a mesh of quadrilaterals
     Mesh(mesh::Args),
+    /// Write a first scene, with comments, for a mesh or a Gmsh geometry
+    New(new::Args),
     /// Do all of a run but its steps, and say what it will cost; nothing is written
     Check(check::Args),
     /// Put material points into the cells of a mesh
@@ -33,28 +34,16 @@ pub enum Command {
     Effects(effects::Args),
     /// Bring a stopped run to another mesh
     Regrid(regrid::Args),
+    /// Draw maps of fields and curves of tables of a run, as PNG or SVG
+    Plot(plot::Args),
+    /// Say what a file or a folder holds
+    Info(info::Args),
     /// Write a run's snapshots for ParaView, meshio and DOLFINx
     Export(export::Args),
-}
-
-impl Command {
-    /// Runs the command; an error is the one message for the user.
-    pub fn run(self) -> Result<()> {
-        match self {
-            Command::Mesh(args) => mesh::run(&args),
-            Command::Check(args) => check::run(&args),
-            Command::Seed(args) => seed::run(&args),
-            Command::Preprocess(args) => preprocess::run(&args),
-            Command::Solve(args) => solve::run(&args),
-            Command::Run(args) => run::run(&args),
-            Command::Resume(args) => resume::run(&args),
-            Command::Verify(args) => verify::run(&args),
-            Command::Study(args) => study::run(&args),
-            Command::Stability(args) => stability::run(&args),
-            Command::Bench(args) => bench::run(&args),
-            Command::Effects(args) => effects::run(&args),
-            Command::Regrid(args) => regrid::run(&args),
-            Command::Export(args) => export::run(&args),
-        }
-    }
+    /// Print the JSON schema of scenes, by which editors complete and check them
+    Schema,
+    /// Print what a shell needs to complete the words of a command
+    Completions(pages::Completions),
+    /// Write a manual page for each command
+    Man(pages::Man),
 }

@@ -1,6 +1,6 @@
 //! `dgmpm effects`: what a scene can ask for, and what it costs.
 
-use super::print::say;
+use super::print::{answer, say};
 use crate::effects;
 use crate::error::Result;
 use crate::io::pending;
@@ -28,7 +28,7 @@ pub struct Args {
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     let (Some(scene), Some(out)) = (&args.measure, &args.out) else {
-        effects::lines().iter().for_each(say);
+        effects::lines().iter().for_each(answer);
         return Ok(());
     };
     let costs = effects::measure(scene, &args.folder, &|line| say(line))?;

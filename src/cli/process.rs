@@ -1,5 +1,6 @@
 //! From the command line of the process to its exit code.
 
+use super::print::Manner;
 use super::{Cli, interrupt, print};
 use crate::error::Result;
 use crate::file::seal;
@@ -40,5 +41,10 @@ pub fn run(cli: Cli) -> Result<()> {
     if cli.trust {
         seal::trust();
     }
+    print::speak(match (cli.quiet, cli.json) {
+        (_, true) => Manner::Json,
+        (true, _) => Manner::Quiet,
+        _ => Manner::Plain,
+    });
     cli.command.run().and_then(|()| print::all_printed())
 }

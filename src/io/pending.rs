@@ -102,6 +102,15 @@ impl Drop for Pending {
     }
 }
 
+/// Writes a whole file without a seal: all of it, or nothing. Its hash goes to the list of the folder of a run.
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<()> {
+    let pending = Pending::new(path)?;
+    fs::write(pending.path(), bytes).map_err(|e| Error::output(path, e))?;
+    own::begin(path)?;
+    pending.commit()?;
+    own::finish(path, &blake3::hash(bytes))
+}
+
 /// Writes a whole text file: all of it, or nothing. The hash of a text without a seal goes to the list of the folder of a run.
 pub fn write_text(path: &Path, text: &str) -> Result<()> {
     let pending = Pending::new(path)?;

@@ -75,6 +75,11 @@ impl Folder {
         self.root.join("export")
     }
 
+    /// Pictures.
+    pub fn plots(&self) -> PathBuf {
+        self.root.join(PLOTS)
+    }
+
     /// Checkpoints.
     pub fn checkpoints(&self) -> PathBuf {
         self.root.join(CHECKPOINTS)
@@ -211,9 +216,10 @@ impl Folder {
 }
 
 const CHECKPOINTS: &str = "checkpoints";
+const PLOTS: &str = "plots";
 const SUMMARY: &str = "summary.json";
 /// Folders of results.
-const FOLDERS: [&str; 5] = ["snapshots", "lines", "tracks", "export", CHECKPOINTS];
+const FOLDERS: [&str; 6] = ["snapshots", "lines", "tracks", "export", PLOTS, CHECKPOINTS];
 
 /// The step in the name of a snapshot or of a grid that came in by a regrid.
 fn step_of(name: &str) -> Option<usize> {

@@ -4,6 +4,7 @@
 //! mesh is checked by [`Scene::check_mesh`]. Every message has file, line and column (or the `--set` at fault)
 //! and lists what exists. A scene knows neither mesh nor solver: names become types elsewhere. Units are SI.
 
+pub mod draft;
 mod given;
 mod groups;
 mod load;
@@ -18,6 +19,7 @@ mod read;
 mod reader;
 mod reference;
 pub mod regrid;
+pub mod schema;
 mod sets;
 mod tables;
 mod times;

@@ -2,7 +2,7 @@
 
 mod args;
 
-use super::print::say;
+use super::print::{answer, say};
 use super::threads;
 use crate::bench::{self, Campaign, Domain, Figures, Length, Setup};
 use crate::error::{Error, Result};
@@ -22,11 +22,11 @@ pub fn run(args: &Args) -> Result<()> {
     let problem = setup.build()?;
     let measured = bench::measure(&problem, args.threads, length)?;
     if args.oneline {
-        say(bench::oneline(&setup, &measured));
+        answer(bench::oneline(&setup, &measured));
         return Ok(());
     }
     let (flops, peaks) = (bench::count(&setup)?, bench::peaks(kernel, args.threads)?);
-    bench::report(&Figures::new(&setup, &problem, measured, flops, peaks)).iter().for_each(say);
+    bench::report(&Figures::new(&setup, &problem, measured, flops, peaks)).iter().for_each(answer);
     Ok(())
 }
 

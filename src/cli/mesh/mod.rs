@@ -4,15 +4,15 @@ mod args;
 mod groups;
 mod to;
 
-use super::print::{note, say, table};
+use super::print::{note, result};
 use crate::error::{Error, Place, Result};
-use crate::format::row;
-use crate::io::{FORMATS, hash, read_tagged, write_mesh};
+use crate::info::Info;
+use crate::io::{FORMATS, read_tagged};
 use crate::mesh::{Link, Mesh, links, rectangle};
 use crate::problem::{notices, room::check_mesh};
 use args::Action;
 use std::path::Path;
-use to::To;
+use to::{rows, write};
 
 pub use args::Args;
 
@@ -21,7 +21,8 @@ pub fn run(args: &Args) -> Result<()> {
     match (&args.action, &args.file) {
         (Some(Action::Info { file, groups }), _) => {
             let mesh = read_tagged(file, &groups.tags()?)?;
-            info(&mesh, &links_of(&mesh, file)?);
+            result(&rows(&mesh), &Info::of_mesh("mesh", &mesh).json());
+            notices::of_mesh(&mesh, &links_of(&mesh, file)?).iter().for_each(note);
             Ok(())
         }
         (Some(Action::Rectangle { size, cells, to }), _) => {
@@ -42,18 +43,4 @@ pub fn run(args: &Args) -> Result<()> {
 
 fn links_of(mesh: &Mesh, file: &Path) -> Result<Vec<[Link; 4]>> {
     links(mesh).map_err(|why| Error::from(why).or_at(Place::file(file)))
-}
-
-/// Writes a mesh whose boundary is wholly tagged.
-fn write(mesh: &Mesh, links: &[[Link; 4]], to: &To, from: &Path) -> Result<()> {
-    let out = to.path(from)?;
-    write_mesh(&out, mesh)?;
-    info(mesh, links);
-    say(format!("written to {}", out.display()));
-    Ok(())
-}
-
-fn info(mesh: &Mesh, links: &[[Link; 4]]) {
-    table(&[mesh.rows(), vec![row("fingerprint", hash::of_places(mesh))]].concat());
-    notices::of_mesh(mesh, links).iter().for_each(note);
 }

@@ -1,7 +1,12 @@
 //! Where a mesh goes.
 
 use crate::cli::output::keep;
+use crate::cli::print::{note, say, table};
 use crate::error::Result;
+use crate::format::{Row, row};
+use crate::io::{hash, write_mesh};
+use crate::mesh::{Link, Mesh};
+use crate::problem::notices;
 use std::path::{Path, PathBuf};
 
 /// Where a mesh goes.
@@ -26,4 +31,19 @@ impl To {
         let beside = out.extension().is_some_and(|ending| ending == "xdmf").then(|| out.with_extension("h5"));
         beside.map_or(Ok(()), |beside| keep(&beside, self.force)).map(|()| out)
     }
+}
+
+/// Writes a mesh whose boundary is wholly tagged.
+pub fn write(mesh: &Mesh, links: &[[Link; 4]], to: &To, from: &Path) -> Result<()> {
+    let out = to.path(from)?;
+    write_mesh(&out, mesh)?;
+    table(&rows(mesh));
+    notices::of_mesh(mesh, links).iter().for_each(note);
+    say(format!("written to {}", out.display()));
+    Ok(())
+}
+
+/// What a mesh holds, as a table.
+pub fn rows(mesh: &Mesh) -> Vec<Row> {
+    [mesh.rows(), vec![row("fingerprint", hash::of_places(mesh))]].concat()
 }

@@ -1,5 +1,8 @@
-//! Where progress is shown: a bar on a terminal, a line a second elsewhere.
+//! Where progress is shown: a bar on a terminal, a line a second elsewhere, an object of JSON, or nowhere. A line of it has at most
+//! 80 columns.
 
+use super::Now;
+use crate::cli::print::{Manner, event, manner};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
@@ -15,8 +18,9 @@ pub struct Display {
 impl Display {
     /// A bar at its beginning, or nothing yet.
     pub fn new() -> Self {
-        let style = ProgressStyle::with_template("{bar:40} {percent:>3} % {msg} eta {eta}");
-        let bar = std::io::stderr().is_terminal().then(|| ProgressBar::new(TICKS));
+        let style = ProgressStyle::with_template("{bar:12} {percent:>3} % {msg} eta {eta}");
+        let has_bar = std::io::stderr().is_terminal() && manner() == Manner::Plain;
+        let bar = has_bar.then(|| ProgressBar::new(TICKS));
         if let (Some(bar), Ok(style)) = (&bar, style) {
             bar.set_style(style);
         }
@@ -27,29 +31,30 @@ impl Display {
     /// in any case.
     pub fn is_due(&self, since: Duration, done: bool) -> bool {
         let pause = if self.bar.is_some() { Duration::from_millis(100) } else { Duration::from_secs(1) };
-        since >= pause || (done && self.bar.is_some())
+        manner() != Manner::Quiet && (since >= pause || (done && self.bar.is_some()))
     }
 
-    /// Shows a share of the run with a message, and `rest`, the seconds that are left, where there is no bar that knows them.
-    pub fn show(&self, share: f64, message: String, done: bool, rest: f64) {
+    /// Shows how far a run is, `rest` s before its end.
+    pub fn show(&self, now: &Now, done: bool, rest: f64) {
         match &self.bar {
             Some(bar) => {
-                bar.set_message(message);
-                bar.set_position((share * TICKS as f64) as u64);
+                bar.set_message(now.words());
+                bar.set_position((now.share * TICKS as f64) as u64);
                 if done {
                     bar.finish_and_clear();
                 }
             }
+            None if manner() == Manner::Json => event("progress", now.json(rest)),
             // Nobody may read along: a closed pipe is no reason to stop a run.
-            None => drop(writeln!(std::io::stderr(), "{:5.1} % {message} eta {rest:.0} s", 100.0 * share)),
+            None => drop(writeln!(std::io::stderr(), "{:5.1} % {} eta {rest:.0} s", 100.0 * now.share, now.words())),
         }
     }
 
-    /// A line above the bar, which stays.
-    pub fn line(&self, text: String) {
+    /// Runs what prints above the bar.
+    pub fn above(&self, print: impl FnOnce()) {
         match &self.bar {
-            Some(bar) => bar.println(text),
-            None => drop(writeln!(std::io::stderr(), "{text}")),
+            Some(bar) => bar.suspend(print),
+            None => print(),
         }
     }
 }

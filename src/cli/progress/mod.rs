@@ -1,12 +1,14 @@
 //! Progress: how far a run is, while it runs.
 
 mod display;
+mod now;
 
-use super::print::say;
+use super::print::{say, warn};
 use crate::error::Result;
 use crate::observe::{Observer, Schedule, View, When};
 use crate::step::EnergyMade;
 use display::Display;
+use now::Now;
 use std::time::Instant;
 
 /// Shows how far the run is.
@@ -28,11 +30,11 @@ impl Progress {
 
 impl Observer for Progress {
     fn energy_made(&mut self, made: &EnergyMade) {
-        self.display.line(format!("warning: {made}; the run goes on"));
+        self.display.above(|| warn(format!("{made}; the run goes on")));
     }
 
     fn notice(&mut self, text: &str) {
-        say(text);
+        self.display.above(|| say(text));
     }
 
     fn schedule(&mut self) -> &mut Schedule {
@@ -40,14 +42,12 @@ impl Observer for Progress {
     }
 
     fn observe(&mut self, view: &View) -> Result<()> {
-        let (state, [start, end]) = (view.state, self.span);
-        let (share, done) = (((state.time - start) / (end - start)).clamp(0.0, 1.0), state.time >= end);
+        let now = Now::of(view, self.span);
+        let done = view.state.time >= self.span[1];
         if self.display.is_due(self.shown.elapsed(), done) {
             self.shown = Instant::now();
-            let (step, t, dt, min_j) = (state.step, state.time, view.dt, view.survey.min_j);
-            let message = format!("step {step} t {t:.4e} s dt {dt:.3e} s min J {min_j:.4}");
-            let rest = self.start.elapsed().as_secs_f64() * (1.0 - share) / share.max(1e-9);
-            self.display.show(share, message, done, rest);
+            let rest = self.start.elapsed().as_secs_f64() * (1.0 - now.share) / now.share.max(1e-9);
+            self.display.show(&now, done, rest);
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ mod files;
 mod material;
 mod scheme;
 
-use super::print::say;
+use super::print::answer;
 use super::threads::start_threads;
 use crate::error::Result;
 use crate::stability::{Plan, lines, rows, values};
@@ -35,7 +35,7 @@ pub fn run(args: &Args) -> Result<()> {
     let questions = args.asked.questions()?;
     args.files.check()?;
     let found = rows(&args.plan()?, questions, args.files.plot.is_some())?;
-    lines(&found).iter().for_each(say);
+    lines(&found).iter().for_each(answer);
     args.files.write(&found)
 }
 

@@ -35,6 +35,33 @@ pub fn mesh(geometry: &Path, size: Option<&dyn Fn([f64; 2]) -> f64>, now: &Mesh)
     in_folder(folder.path(), &geometry, size, now)
 }
 
+/// Meshes a geometry as it says; where that gives other cells than quadrilaterals, once more with Gmsh's options that leave no others.
+/// Also whether these options were needed.
+///
+/// # Errors
+/// As for [`mesh`].
+pub fn first_mesh(geometry: &Path) -> Result<(Mesh, bool), Fault> {
+    let geometry = geometry.canonicalize().map_err(|why| fault(format!("{}: {why}", geometry.display())))?;
+    look(&geometry)?;
+    let folder = tempfile::Builder::new().prefix("dgmpm-gmsh-").tempdir().map_err(fault)?;
+    let run = |more: &[&str]| {
+        let out = folder.path().join("first.msh");
+        let mut gmsh = command(folder.path(), &geometry, &out);
+        gmsh.args(more);
+        run(gmsh)?;
+        crate::io::read_mesh(&out).map_err(fault)
+    };
+    match run(&[]) {
+        Ok(mesh) => Ok((mesh, false)),
+        // What the file itself gives is what its message is about.
+        Err(why) => run(&QUADRILATERALS).map(|mesh| (mesh, true)).map_err(|_| why),
+    }
+}
+
+/// Options by which Gmsh makes quadrilaterals of whatever it meshes, and cuts the triangles that are left into three.
+const QUADRILATERALS: [&str; 6] =
+    ["-setnumber", "Mesh.RecombineAll", "1", "-setnumber", "Mesh.SubdivisionAlgorithm", "1"];
+
 /// Whether a geometry is a text file, and as it was written.
 ///
 /// # Errors
@@ -60,23 +87,35 @@ fn in_folder(
     now: &Mesh,
 ) -> Result<Mesh, Fault> {
     let out = folder.join("regrid.msh");
-    let mut gmsh = Command::new("gmsh");
-    gmsh.current_dir(folder).args(["-2", "-v", "1", "-format", "msh41", "-o"]).arg(&out).arg(geometry);
+    let mut gmsh = command(folder, geometry, &out);
     if let Some(size) = size {
         write_size_field(folder, size, now)?;
         gmsh.arg(SCRIPT);
     }
+    run(gmsh)?;
+    crate::io::read_mesh(&out).map_err(fault)
+}
+
+/// Gmsh, from a geometry to a mesh of its surfaces.
+fn command(folder: &Path, geometry: &Path, out: &Path) -> Command {
+    let mut gmsh = Command::new("gmsh");
+    gmsh.current_dir(folder).args(["-2", "-v", "1", "-format", "msh41", "-o"]).arg(out).arg(geometry);
+    gmsh
+}
+
+/// Runs Gmsh to its end.
+fn run(mut gmsh: Command) -> Result<(), Fault> {
     let run = gmsh.output().map_err(|why| {
         let remedy =
-            "install Gmsh (https://gmsh.info, or `pip install gmsh`) so that `gmsh` is on the path, or give `mesh`";
+            "install Gmsh (https://gmsh.info, or `pip install gmsh`) so that `gmsh` is on the path, or give a mesh";
         (format!("cannot run `gmsh`: {why}"), remedy)
     })?;
-    if !run.status.success() {
-        let said = String::from_utf8_lossy(&run.stderr);
-        let line = said.lines().find(|line| line.contains("rror")).or(said.lines().next()).unwrap_or_default();
-        return Err(fault(format!("gmsh failed ({}): {line}", run.status)));
+    if run.status.success() {
+        return Ok(());
     }
-    crate::io::read_mesh(&out).map_err(fault)
+    let said = String::from_utf8_lossy(&run.stderr);
+    let line = said.lines().find(|line| line.contains("rror")).or(said.lines().next()).unwrap_or_default();
+    Err(fault(format!("gmsh failed ({}): {line}", run.status)))
 }
 
 /// The script that takes the size field as the size of the cells.

@@ -1,23 +1,18 @@
-//! What commands say. A reader that closes the pipe (`dgmpm run .. | head -1`) neither stops nor breaks a run: results
-//! are files, and the exit code says how it went. Any other reason why nothing can be printed is an error at the end.
+//! Where words go: standard output, and standard error for what is wrong, with colours on a terminal alone.
 
 use crate::error::{Error, Result};
 use crate::format::Row;
+use anstyle::Style;
 use std::io::{ErrorKind, Write};
 use std::sync::{Mutex, PoisonError};
 
 /// The first reason why standard output could not be written, such as a full device.
 static FAULT: Mutex<Option<String>> = Mutex::new(None);
 
-/// Prints a line on standard output.
-pub fn say(text: impl AsRef<str>) {
+/// Writes a line on standard output.
+pub fn write(text: &str) {
     let mut out = std::io::stdout().lock();
-    printed(writeln!(out, "{}", text.as_ref()).and_then(|()| out.flush()));
-}
-
-/// Prints a line on standard output, as a notice: no error, and yet seldom meant.
-pub fn note(text: impl AsRef<str>) {
-    say(format!("note: {}", text.as_ref()));
+    printed(writeln!(out, "{text}").and_then(|()| out.flush()));
 }
 
 /// Takes notice of what became of a print; a closed pipe is no fault.
@@ -40,18 +35,13 @@ pub fn all_printed() -> Result<()> {
     }
 }
 
-/// Prints a line on standard error, as a warning.
-pub fn warn(text: impl AsRef<str>) {
-    let _ = writeln!(std::io::stderr(), "warning: {}", text.as_ref());
+/// Writes a line on standard error behind a word, which has a colour on a terminal, unless NO_COLOR says otherwise.
+pub fn complain(word: &str, style: Style, text: &str) {
+    let _ = writeln!(anstream::stderr(), "{style}{word}{style:#}: {text}");
 }
 
-/// Prints the message of an error on standard error.
-pub fn complain(error: &Error) {
-    let _ = writeln!(std::io::stderr(), "error: {error}");
-}
-
-/// Prints a table of two columns.
-pub fn table(rows: &[Row]) {
+/// Writes a table of two columns.
+pub fn aligned(rows: &[Row]) {
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
-    rows.iter().for_each(|(name, value)| say(format!("  {name:width$}  {value}")));
+    rows.iter().for_each(|(name, value)| write(&format!("  {name:width$}  {value}")));
 }

@@ -1,0 +1,44 @@
+//! `dgmpm new`: a first scene for a mesh.
+
+use super::output::{keep, keep_as};
+use super::print::{note, say, table};
+use crate::error::Result;
+use crate::io::{pending, write_mesh};
+use crate::problem::First;
+use std::path::PathBuf;
+
+/// Arguments.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Gmsh mesh (.msh), a mesh.h5, or a Gmsh geometry (.geo), which the program `gmsh` meshes
+    mesh: PathBuf,
+    /// Where to write the scene [default: the name of the mesh with .toml, beside it]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Replace scene and mesh
+    #[arg(long)]
+    force: bool,
+}
+
+/// Runs it.
+pub fn run(args: &Args) -> Result<()> {
+    let out = args.out.clone().unwrap_or_else(|| args.mesh.with_extension("toml"));
+    keep(&out, args.force)?;
+    let first = First::read(&args.mesh)?;
+    if first.is_new {
+        keep_as(&first.path, args.force, "name it in place of the geometry")?;
+    }
+    let (text, more) = first.scene(&out)?;
+    if first.is_new {
+        write_mesh(&first.path, &first.mesh)?;
+        say(format!("mesh written to {}", first.path.display()));
+    }
+    table(&first.mesh.rows());
+    first.notes.iter().chain(&more).for_each(note);
+    pending::write_text(&out, &text)?;
+    let name = out.file_stem().unwrap_or_default().to_string_lossy();
+    say(format!("scene written to {}; it runs as it is:", out.display()));
+    say(format!("  dgmpm run {}", out.display()));
+    say(format!("  dgmpm plot runs/{name}"));
+    Ok(())
+}
