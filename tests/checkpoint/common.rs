@@ -27,6 +27,16 @@ impl Bench {
         std::fs::write(self.path("parts.toml"), text).unwrap();
     }
 
+    /// Writes `parts.toml`, a scene of two bodies that meet and slide.
+    pub fn of_two_bodies(&self) {
+        let mut parts = Parts::default();
+        let sides = |sides: [&str; 4]| sides.map(str::to_owned);
+        parts.rectangle([0.0; 2], [1.0, 0.5], [6, 3], "body", &sides(["out", "a", "out", "out"]));
+        parts.rectangle([1.005, 0.1], [0.5, 0.5], [3, 3], "body", &sides(["b", "out", "out", "out"]));
+        let conditions = [("out", "kind=\"free\""), ("a", "kind=\"contact\",partner=\"b\",friction=0.3")];
+        self.of_parts(&parts, &conditions, "\"100*step(1.001 - x)\", \"-30*step(x - 1.001)\"");
+    }
+
     pub fn new() -> Self {
         let bench = Self { folder: tempfile::tempdir().unwrap() };
         std::fs::write(bench.path("case.toml"), SCENE).unwrap();

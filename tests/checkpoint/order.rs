@@ -1,6 +1,5 @@
 //! The bits of a run do not depend on the order of the blocks of its cells: sums over the body are exact.
 
-use crate::bodies::Parts;
 use crate::common::{Bench, assert_same};
 use dgmpm::parts::io::operators_file;
 use dgmpm::parts::operators::{Blocks, Line, Stored};
@@ -59,11 +58,6 @@ fn the_order_of_the_blocks_changes_no_bit() {
 #[test]
 fn nor_does_it_where_bodies_meet() {
     let bench = Bench::new();
-    let mut parts = Parts::default();
-    let sides = |sides: [&str; 4]| sides.map(str::to_owned);
-    parts.rectangle([0.0; 2], [1.0, 0.5], [6, 3], "body", &sides(["out", "a", "out", "out"]));
-    parts.rectangle([1.005, 0.1], [0.5, 0.5], [3, 3], "body", &sides(["b", "out", "out", "out"]));
-    let conditions = [("out", "kind=\"free\""), ("a", "kind=\"contact\",partner=\"b\",friction=0.3")];
-    bench.of_parts(&parts, &conditions, "\"100*step(1.001 - x)\", \"-30*step(x - 1.001)\"");
+    bench.of_two_bodies();
     compare("contact", &bench.path("parts.toml"), &[]);
 }

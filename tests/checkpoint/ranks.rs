@@ -1,6 +1,5 @@
 //! Several ranks that step a body together write the files of one alone, to the byte. Here ranks are threads of one program.
 
-use crate::bodies::Parts;
 use crate::common::{Bench, assert_same};
 use dgmpm::Exchange;
 use dgmpm::parts::problem::{Problem, Setup};
@@ -133,12 +132,7 @@ fn ranks_have_the_bits_of_one_where_a_step_looks_at_the_whole_body() {
     let (fem, fast) = ("scheme.method=rk-dgfem", "initial.velocity=[\"-1500\",\"0\"]");
     let limiter = "limiter={kind=\"moment\"}";
     compare("limiter", &case, &[QUIET, CELLS, ELASTIC, fem, limiter, fast, "regrid=[]"], 2);
-    let mut parts = Parts::default();
-    let sides = |sides: [&str; 4]| sides.map(str::to_owned);
-    parts.rectangle([0.0; 2], [1.0, 0.5], [6, 3], "body", &sides(["out", "a", "out", "out"]));
-    parts.rectangle([1.005, 0.1], [0.5, 0.5], [3, 3], "body", &sides(["b", "out", "out", "out"]));
-    let conditions = [("out", "kind=\"free\""), ("a", "kind=\"contact\",partner=\"b\",friction=0.3")];
-    bench.of_parts(&parts, &conditions, "\"100*step(1.001 - x)\", \"-30*step(x - 1.001)\"");
+    bench.of_two_bodies();
     compare("contact", &bench.path("parts.toml"), &["scheme.angular_momentum=true"], 2);
 }
 
