@@ -195,7 +195,7 @@ pub static OUTPUTS: Table<Output> = Table::new(&[
             ),
             Parameter::new(
                 "by",
-                "`\"group\"`: what the condition of each group gives to the body; `\"pair\"`: what each group in contact receives from each other one, in columns `a_by_b_..`",
+                "`\"group\"`: from the condition of each group; `\"pair\"`: from one group in contact to the other, in columns `a_by_b_..`",
                 "",
                 Form::Name(|| vec!["group", "pair"], &[]),
                 Preset::Name("group"),
