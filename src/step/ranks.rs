@@ -4,18 +4,14 @@
 //! between phases ranks send each other those that they need. Nothing is computed twice and nothing in another order, so that the
 //! bits do not depend on the number of ranks.
 //!
-//! Each rank has memory for the whole state. After a step it knows its own blocks; [`Motion::make_whole`] fetches the others where
+//! Each rank has memory for the whole state. After a step it knows its own blocks; [`super::Motion::make_whole`] fetches the others where
 //! somebody looks at them. Corrections, contact, and angular momentum that is kept look at the whole body in each step.
 
-use super::balance::BlockBalance;
-use super::loss::FacePoint;
-use super::obstacles;
-use super::outside::{ExternalWork, FaceForces, Torques};
+use super::numbers::Numbers;
 use super::received::ReceivedBySide;
-use super::tile_memory::Tiles;
 use super::tiles::{Plan, Slot};
 use super::worst::Worst;
-use super::{Motion, Scheme, Speeds, Work};
+use super::{Scheme, Speeds};
 use crate::exchange::Exchange;
 use crate::lane::{F8, LANES};
 use crate::mesh::FACES;
@@ -40,7 +36,7 @@ pub(super) struct Ranks {
     /// Numbers under way to all.
     all: Vec<f64>,
     /// Whether the last step has left this rank with the blocks of all.
-    whole: bool,
+    pub whole: bool,
 }
 
 /// The traces of a face of a block, where a tile shows them.
@@ -163,7 +159,7 @@ impl Ranks {
     }
 
     /// Gives all ranks what the sides of segments have received: each side on the rank of its cell, 0 elsewhere.
-    fn add_up(&mut self, received: &mut [[ReceivedBySide; 2]]) {
+    pub fn add_up(&mut self, received: &mut [[ReceivedBySide; 2]]) {
         let (rank, count) = (self.exchange.rank(), 6 * received.len());
         self.all.clear();
         self.all.resize(self.exchange.ranks() * count, 0.0);
@@ -195,7 +191,7 @@ impl Ranks {
     }
 
     /// Whether a rank says yes.
-    fn any(&self, yes: bool) -> bool {
+    pub fn any(&self, yes: bool) -> bool {
         let (rank, ranks) = (self.exchange.rank(), self.exchange.ranks());
         let mut all = vec![0.0; ranks];
         all[rank] = f64::from(u8::from(yes));
@@ -204,132 +200,9 @@ impl Ranks {
     }
 }
 
-/// A fixed count of numbers, to be sent.
-pub(super) trait Numbers {
-    const COUNT: usize;
-    fn write(&self, to: &mut [f64]);
-    fn read(&mut self, from: &[f64]);
-}
-
-impl Numbers for f64 {
-    const COUNT: usize = 1;
-    fn write(&self, to: &mut [f64]) {
-        to[0] = *self;
-    }
-    fn read(&mut self, from: &[f64]) {
-        *self = from[0];
-    }
-}
-
-impl Numbers for F8 {
-    const COUNT: usize = LANES;
-    fn write(&self, to: &mut [f64]) {
-        to.copy_from_slice(&self.0);
-    }
-    fn read(&mut self, from: &[f64]) {
-        self.0.copy_from_slice(from);
-    }
-}
-
-/// A type that consists of fields of eight lanes, in this order.
-macro_rules! of_lanes {
-    ($type:ty, $count:literal, $value:ident => $fields:expr) => {
-        impl Numbers for $type {
-            const COUNT: usize = $count * LANES;
-            fn write(&self, to: &mut [f64]) {
-                let mut copy = *self;
-                let $value = &mut copy;
-                $fields.into_iter().zip(to.chunks_exact_mut(LANES)).for_each(|(from, to)| from.write(to));
-            }
-            fn read(&mut self, from: &[f64]) {
-                let $value = self;
-                $fields.into_iter().zip(from.chunks_exact(LANES)).for_each(|(to, from)| to.read(from));
-            }
-        }
-    };
-}
-
-of_lanes!(ExternalWork, 4, of => [&mut of.boundary, &mut of.source].into_iter().chain(&mut of.impulse));
-of_lanes!(FaceForces, 12, of => of.impulse.iter_mut().flatten().chain(&mut of.work));
-of_lanes!(Torques, 4, of => of);
-of_lanes!(BlockBalance, 4, of => [&mut of.flux, &mut of.boundary, &mut of.corrected, &mut of.energy]);
-of_lanes!(Speeds, 2, of => [&mut of.fastest, &mut of.prestress]);
-
-impl Numbers for Worst {
-    /// The lanes of the fastest and of the least J, the lost block, and the face point: its block (none: below 0), lane, face, point, J.
-    const COUNT: usize = 2 * LANES + 6;
-    fn write(&self, to: &mut [f64]) {
-        let face = self.face.map_or([-1.0; 5], |face| {
-            [face.block as f64, face.lane as f64, face.at[0] as f64, face.at[1] as f64, face.j]
-        });
-        let lost = if self.lost == usize::MAX { -1.0 } else { self.lost as f64 };
-        let numbers = self.fastest.0.into_iter().chain(self.min_j.0).chain([lost]).chain(face);
-        to.iter_mut().zip(numbers).for_each(|(to, from)| *to = from);
-    }
-    fn read(&mut self, from: &[f64]) {
-        let (lanes, rest) = from.split_at(2 * LANES);
-        self.fastest.read(&lanes[..LANES]);
-        self.min_j.read(&lanes[LANES..]);
-        self.lost = if rest[0] < 0.0 { usize::MAX } else { rest[0] as usize };
-        let [block, lane, face, point] = [1, 2, 3, 4].map(|k| rest[k] as usize);
-        self.face = (rest[1] >= 0.0).then_some(FacePoint { block, lane, at: [face, point], j: rest[5] });
-    }
-}
-
-impl Work {
-    /// Whether several ranks step the body.
-    pub(crate) fn is_shared(&self) -> bool {
-        self.tiles.ranks.is_some()
-    }
-
-    /// Gives all ranks what each of them has metered in a step; all of the new state where the scheme looks at it in each step.
-    pub(super) fn share(&mut self, scheme: &Scheme) {
-        let Work { tiles: Tiles { ranks, .. }, outside, balance, meetings, .. } = self;
-        let Some(ranks) = ranks else { return };
-        ranks.whole = false;
-        let entry = |block: usize| outside.first[block] as usize;
-        ranks.gather(&mut outside.entries, entry);
-        if let Some(forces) = &mut outside.forces {
-            ranks.gather(forces, entry);
-        }
-        if let Some(torques) = &mut outside.torques {
-            ranks.gather(torques, entry);
-        }
-        if let Some(balance) = balance {
-            ranks.gather(balance, |block| block);
-        }
-        if let Some(received) = meetings.as_deref_mut().and_then(|meetings| meetings.received.as_mut()) {
-            ranks.add_up(received);
-        }
-        if scheme.looks_at_all() {
-            self.fetch(scheme);
-        }
-    }
-
-    /// The state that is at hand is the one before a step again, of which this rank may know its own blocks only.
-    pub(super) fn forget_others(&mut self) {
-        if let Some(ranks) = &mut self.tiles.ranks {
-            ranks.whole = false;
-        }
-    }
-
-    /// Fetches the blocks of other ranks of the new state.
-    pub(super) fn fetch(&mut self, scheme: &Scheme) {
-        let Work { tiles: Tiles { ranks, .. }, next, speed, corrections, scratch, .. } = self;
-        let Some(ranks) = ranks.as_deref_mut().filter(|ranks| !ranks.whole) else { return };
-        ranks.state(scheme, next, speed);
-        let Some(memory) = corrections.as_deref_mut() else { return };
-        let own = ranks.blocks[ranks.exchange.rank()]..ranks.blocks[ranks.exchange.rank() + 1];
-        let foreign = |block: &usize| !own.contains(block);
-        for block in (0..scheme.operators.blocks.len()).filter(foreign) {
-            memory.worst[block] = scheme.worst_of_block(next, block, scratch, &mut speed[block]);
-        }
-    }
-}
-
 impl Ranks {
     /// Fetches the blocks of other ranks of a state and its speeds.
-    fn state(&mut self, scheme: &Scheme, state: &mut State, speed: &mut [Speeds]) {
+    pub fn state(&mut self, scheme: &Scheme, state: &mut State, speed: &mut [Speeds]) {
         let stride = state.components * scheme.operators.nodes();
         self.gather(&mut state.u, |block| block * stride);
         if !state.internal.is_empty() {
@@ -348,32 +221,9 @@ impl Ranks {
         self.gather(speed, |block| block);
         self.whole = true;
     }
-}
 
-impl Scheme {
-    /// Whether something of each step looks at the whole body.
-    fn looks_at_all(&self) -> bool {
-        let looks = !self.corrections.is_empty() || self.rescue.is_some();
-        looks || self.contacts.is_some() || self.bodies.is_some() || obstacles::Obstacles::is_asked_for(self)
-    }
-}
-
-impl Motion {
-    /// Whether several ranks step the body.
-    pub fn is_shared(&self) -> bool {
-        self.work.is_shared()
-    }
-
-    /// Fetches what other ranks know of the state. All ranks call it at the same step.
-    pub fn make_whole(&mut self, scheme: &Scheme) {
-        let Self { state, survey, work, .. } = self;
-        if let Some(ranks) = work.tiles.ranks.as_deref_mut().filter(|ranks| !ranks.whole) {
-            ranks.state(scheme, state, &mut survey.speed);
-        }
-    }
-
-    /// Whether any rank says yes; without other ranks what is said.
-    pub fn any(&self, yes: bool) -> bool {
-        self.work.tiles.ranks.as_ref().map_or(yes, |ranks| ranks.any(yes))
+    /// The blocks of this rank.
+    pub fn own(&self) -> Range<usize> {
+        self.blocks[self.exchange.rank()]..self.blocks[self.exchange.rank() + 1]
     }
 }

@@ -48,6 +48,7 @@ class Run:
     def __init__(self, folder):
         with h5py.File(folder / "mesh.h5") as mesh, h5py.File(folder / "cloud.h5") as cloud:
             self.cells, self.number = mesh["cells"][()], mesh["original"][()]
+            self.group = mesh["cell_group"][()].astype(float)
             self.corners = mesh["nodes"][()][self.cells]
             self.first, self.xi = cloud["first"][()], cloud["xi"][()]
         self.steps = []
@@ -207,7 +208,7 @@ def main():
         # Condition of the fit, Lebesgue constant, class, dt: computed by other tests, taken as they are here.
         given = {key: np.array(v) for key, v in pyvista.read(path).cell_data.items()
                  if key in ("condition", "face_lebesgue", "class", "dt")}
-        certificate = {"cell": run.number.astype(float), "material": np.zeros(count), "points": per_cell,
+        certificate = {"cell": run.number.astype(float), "material": np.zeros(count), "group": run.group, "points": per_cell,
                        "rank": np.full(count, float(len(lattice))), "h": run.h_e(), **given}
         grid = check_vtu(run, path, count, run.fields(step, grid_cell, grid_xi), certificate, args.limit)
         check(f"{path.name}: positions", error(grid.points[:, :2], bilinear(run.corners[grid_cell], grid_xi)) < 1e-15)
