@@ -208,8 +208,8 @@ def main():
         # Condition of the fit, Lebesgue constant, class, dt: computed by other tests, taken as they are here.
         given = {key: np.array(v) for key, v in pyvista.read(path).cell_data.items()
                  if key in ("condition", "face_lebesgue", "class", "dt")}
-        certificate = {"cell": run.number.astype(float), "material": np.zeros(count), "group": run.group, "points": per_cell,
-                       "rank": np.full(count, float(len(lattice))), "h": run.h_e(), **given}
+        certificate = {"cell": run.number.astype(float), "material": np.zeros(count), "group": run.group,
+                       "points": per_cell, "rank": np.full(count, float(len(lattice))), "h": run.h_e(), **given}
         grid = check_vtu(run, path, count, run.fields(step, grid_cell, grid_xi), certificate, args.limit)
         check(f"{path.name}: positions", error(grid.points[:, :2], bilinear(run.corners[grid_cell], grid_xi)) < 1e-15)
         grids.append(grid)
