@@ -195,7 +195,10 @@ impl Chart {
             let style = ShapeStyle::from(colour).stroke_width(2);
             let points = line.points.clone();
             match line.stroke {
-                Stroke::Full => chart.draw_series(LineSeries::new(points, style)),
+                // Piece by piece: where a line turns back, one path would have a spike that is no value.
+                Stroke::Full => {
+                    chart.draw_series(points.windows(2).map(|piece| PathElement::new(piece.to_vec(), style)))
+                }
                 Stroke::Dashed => chart.draw_series(DashedLineSeries::new(points, 7, 5, style)),
                 Stroke::Dotted => chart.draw_series(DashedLineSeries::new(points, 2, 4, style)),
             }

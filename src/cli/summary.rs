@@ -1,10 +1,13 @@
 //! The table at the end of a run.
 
-use super::print::{table, warn};
+use super::print::{note, table, warn};
 use crate::problem::Outcome;
 
 /// Overlaps of bodies from this share of a cell on are said.
 const WORTH_NAMING: f64 = 0.2;
+
+/// The share of the energy that contact may take without a word.
+const WORTH_SAYING: f64 = 0.1;
 
 /// Prints steps, dt, seconds per phase, DoF-updates per second, memory, energy, momentum and errors; a warning where a run
 /// that got to its end has made energy, or where bodies overlap.
@@ -19,6 +22,14 @@ pub fn print(outcome: &Outcome, got_to_its_end: bool) {
         warn(format!(
             "the body was {percent:.0} % of a cell deep in an obstacle, on the face at X = ({x:.4}, {y:.4}): an obstacle that is small beside the cells may go through it; \
              smaller cells help"
+        ));
+    }
+    let share = outcome.report.taken_by_contact();
+    if share > WORTH_SAYING {
+        note(format!(
+            "faces that act on each other took {:.0} % of the energy: what friction and cohesive edges do not take is lost where cells are coarse for the \
+             place of contact; smaller cells or a higher degree lose less",
+            100.0 * share
         ));
     }
     if let Some(overlap) = outcome.report.overlap.filter(|overlap| overlap.share > WORTH_NAMING) {

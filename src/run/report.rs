@@ -171,6 +171,13 @@ impl Report {
         self.last = Some(last);
     }
 
+    /// The share of the energy (of the start and of the work done) that contact, friction and cohesive edges have taken.
+    pub fn taken_by_contact(&self) -> f64 {
+        let had =
+            self.first.as_ref().map_or(0.0, Totals::accounted) + (self.watch.work[0] + self.watch.work[1]).max(0.0);
+        if had > 0.0 { -self.watch.contact_work / had } else { 0.0 }
+    }
+
     /// DoF-updates per CPU second.
     pub fn rate(&self) -> f64 {
         if self.cpu > 0.0 { self.updates / self.cpu } else { 0.0 }
