@@ -9,6 +9,7 @@ mod effects;
 mod export;
 mod info;
 mod interrupt;
+mod keep;
 mod line;
 mod mesh;
 mod new;

@@ -1,6 +1,6 @@
 //! `dgmpm new`: a first scene for a mesh.
 
-use super::output::{keep, keep_as};
+use super::keep::{keep_as, keep_from};
 use super::print::{note, say, table};
 use crate::error::Result;
 use crate::io::{pending, write_mesh};
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 /// Arguments.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Gmsh mesh (.msh), a mesh.h5, or a Gmsh geometry (.geo), which the program `gmsh` meshes
+    /// A mesh (.msh, .h5, .vtu, .xdmf), or a Gmsh geometry (.geo), which the program `gmsh` meshes
     mesh: PathBuf,
     /// Where to write the scene [default: the name of the mesh with .toml, beside it]
     #[arg(long, value_name = "FILE")]
@@ -23,7 +23,7 @@ pub struct Args {
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     let out = args.out.clone().unwrap_or_else(|| args.mesh.with_extension("toml"));
-    keep(&out, args.force)?;
+    keep_from(&out, args.force, &[args.mesh.clone(), args.mesh.with_extension("msh")])?;
     let first = First::read(&args.mesh)?;
     if first.is_new {
         keep_as(&first.path, args.force, "name it in place of the geometry")?;

@@ -2,7 +2,7 @@
 
 use super::print::note;
 use super::threads::start_threads;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::format::count;
 use crate::run::Folder;
 use crate::scene::Scene;
@@ -36,20 +36,6 @@ impl RunArgs {
     pub fn start_threads(&self) -> Result<()> {
         self.threads.map_or(Ok(()), start_threads)
     }
-}
-
-/// Refuses to write over a file unless `force`.
-pub fn keep(path: &Path, force: bool) -> Result<()> {
-    keep_as(path, force, "another --out")
-}
-
-/// The same, where the file is not named by --out but as `other` says.
-pub fn keep_as(path: &Path, force: bool, other: &str) -> Result<()> {
-    if path.exists() && !force {
-        let remedy = format!("give --force to replace it, or {other}");
-        return Err(Error::input(format!("{} exists", path.display()), remedy));
-    }
-    Ok(())
 }
 
 /// Names what stays of the files in the folders of results.

@@ -1,7 +1,7 @@
 //! `dgmpm preprocess`: all matrices, and what the run will cost.
 
 use super::args::{FileArgs, SceneArgs};
-use super::output::keep;
+use super::keep::keep_from;
 use super::print::say;
 use super::report::report;
 use crate::error::Result;
@@ -30,7 +30,8 @@ pub struct Args {
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     let scene = args.scene.load()?;
-    keep(&args.out, args.force || operators_file::may_replace(&args.out))?;
+    let force = args.force || operators_file::may_replace(&args.out);
+    keep_from(&args.out, force, &args.files.files().inputs(&scene))?;
     scene.settings()?;
     let body = args.files.files().body(&scene)?;
     if args.strict {

@@ -1,6 +1,6 @@
 //! `dgmpm regrid`: a stopped run on another grid, in a folder that `run` goes on from.
 
-use super::output::keep;
+use super::keep::keep;
 use super::print::say;
 use crate::error::{Error, Result};
 use crate::format::count;

@@ -1,7 +1,7 @@
 //! `dgmpm seed`: material points into the cells of a mesh.
 
 use super::args::SceneArgs;
-use super::output::keep;
+use super::keep::keep_from;
 use super::print::say;
 use crate::cloud::Cloud;
 use crate::error::Result;
@@ -30,9 +30,10 @@ pub struct Args {
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     let scene = args.scene.load()?;
-    let mesh = Files { mesh: args.mesh.clone(), cloud: None }.mesh(&scene)?;
+    let files = Files { mesh: args.mesh.clone(), cloud: None };
+    keep_from(&args.out, args.force, &files.inputs(&scene))?;
+    let mesh = files.mesh(&scene)?;
     let cloud = scene.build_cloud(&mesh)?;
-    keep(&args.out, args.force)?;
     cloud_file::write_cloud(&args.out, &cloud, &mesh)?;
     report(&cloud);
     say(format!("written to {}", args.out.display()));

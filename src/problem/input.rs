@@ -127,6 +127,15 @@ struct Source {
     target: PathBuf,
 }
 
+impl Files {
+    /// All files that a scene is computed from with these, the scene among them.
+    pub fn inputs(&self, scene: &Scene) -> Vec<PathBuf> {
+        let folder = Folder::new(Path::new(""));
+        let all = sources(scene, self, None, &folder).into_iter().map(|source| source.path);
+        all.chain([scene.path().to_owned()]).collect()
+    }
+}
+
 /// All files that a run starts from.
 fn sources(scene: &Scene, files: &Files, operators: Option<&Path>, folder: &Folder) -> Vec<Source> {
     let source = |key: &str, path: PathBuf, target: PathBuf| Source { key: key.to_owned(), path, target };

@@ -118,9 +118,14 @@ pub fn repeat(folder: &Folder, summary: &Value, steps: Option<usize>, kernel: Ke
 
 impl Repeated {
     fn compare_snapshots(&mut self, run: &Folder, again: &Folder, start: usize) -> Result<()> {
+        let last = snapshot::list(&run.snapshots())?.last().map_or(0, |(step, _)| *step);
         for (step, path) in snapshot::list(&again.snapshots())? {
             let there = snapshot::path(&run.snapshots(), step);
             if !there.exists() {
+                // A run that was killed may not have got there.
+                if step < last {
+                    self.differs.push(format!("the snapshot of step {step} is missing"));
+                }
                 continue;
             }
             match Snapshot::read(&there)?.bits() == Snapshot::read(&path)?.bits() {

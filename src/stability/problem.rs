@@ -6,7 +6,7 @@ use crate::problem;
 use crate::registry::Value;
 use crate::scene::{Scene, Step};
 use crate::state::State;
-use crate::step::{Method, Scheme, Survey, Work};
+use crate::step::{Method, Motion, Scheme};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -226,7 +226,8 @@ impl Problem {
         (unit, units): (Option<[usize; 2]>, usize),
         (courant, known_limit): (f64, f64),
     ) -> Result<Self> {
-        let (work, mut survey) = (Work::new(&scheme, &state), Survey::default());
+        // With the memory that conditions have at a start.
+        let Motion { state, work, mut survey, .. } = Motion::unsurveyed(&scheme, state);
         scheme.survey(&state, &work, &mut survey).map_err(|loss| {
             let what = format!("the state is no state of the law: {} in cell {}", loss.kind, mesh.number(loss.cell));
             Error::input(what, "give another deformation, or a law that is hyperbolic there")

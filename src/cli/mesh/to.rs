@@ -1,6 +1,6 @@
 //! Where a mesh goes.
 
-use crate::cli::output::keep;
+use crate::cli::keep::{keep, keep_from};
 use crate::cli::print::{note, say, table};
 use crate::error::Result;
 use crate::format::{Row, row};
@@ -27,7 +27,9 @@ impl To {
         let stem = from.file_stem().unwrap_or_default().to_string_lossy();
         let default = || from.with_file_name(if of_xdmf { format!("{stem}_mesh.h5") } else { format!("{stem}.h5") });
         let out = self.out.clone().unwrap_or_else(default);
-        keep(&out, self.force)?;
+        // A mesh may be written in the place of the one that was read, but not into half of it.
+        let numbers = if of_xdmf { vec![from.with_extension("h5")] } else { vec![] };
+        keep_from(&out, self.force, &numbers)?;
         let beside = out.extension().is_some_and(|ending| ending == "xdmf").then(|| out.with_extension("h5"));
         beside.map_or(Ok(()), |beside| keep(&beside, self.force)).map(|()| out)
     }

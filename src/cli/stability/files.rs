@@ -1,7 +1,7 @@
 //! Where the results go.
 
 use crate::chart;
-use crate::cli::output::keep_as;
+use crate::cli::keep::keep_as;
 use crate::error::Result;
 use crate::io::pending::write_text;
 use crate::stability::{self, Row};

@@ -3,7 +3,7 @@
 mod compared;
 
 use super::args::SceneArgs;
-use super::output::keep;
+use super::keep::keep;
 use super::print::say;
 use super::threads::start_threads;
 use crate::error::Result;
