@@ -48,8 +48,8 @@ pub fn first_mesh(geometry: &Path) -> Result<(Mesh, bool), Fault> {
         let out = folder.path().join("first.msh");
         let mut gmsh = command(folder.path(), &geometry, &out);
         gmsh.args(more);
-        run(gmsh)?;
-        crate::io::read_mesh(&out).map_err(fault)
+        let said = run(gmsh)?;
+        read(&out, &geometry, &said)
     };
     match run(&[]) {
         Ok(mesh) => Ok((mesh, false)),
@@ -92,8 +92,17 @@ fn in_folder(
         write_size_field(folder, size, now)?;
         gmsh.arg(SCRIPT);
     }
-    run(gmsh)?;
-    crate::io::read_mesh(&out).map_err(fault)
+    let said = run(gmsh)?;
+    read(&out, geometry, &said)
+}
+
+/// The mesh that Gmsh has made of a geometry. Gmsh ends with success where it has found errors, which are in `said`.
+fn read(out: &Path, geometry: &Path, said: &str) -> Result<Mesh, Fault> {
+    crate::io::read_mesh(out).map_err(|why| match said {
+        // The file of the mesh is gone when somebody reads the message.
+        "" => fault(why.to_string().replace(&*out.to_string_lossy(), &format!("the mesh of {}", geometry.display()))),
+        said => fault(format!("gmsh made no mesh of {}: {said}", geometry.display())),
+    })
 }
 
 /// Gmsh, from a geometry to a mesh of its surfaces.
@@ -103,18 +112,19 @@ fn command(folder: &Path, geometry: &Path, out: &Path) -> Command {
     gmsh
 }
 
-/// Runs Gmsh to its end.
-fn run(mut gmsh: Command) -> Result<(), Fault> {
+/// Runs Gmsh to its end; its first word on an error, empty where it has found none.
+fn run(mut gmsh: Command) -> Result<String, Fault> {
     let run = gmsh.output().map_err(|why| {
         let remedy =
             "install Gmsh (https://gmsh.info, or `pip install gmsh`) so that `gmsh` is on the path, or give a mesh";
         (format!("cannot run `gmsh`: {why}"), remedy)
     })?;
-    if run.status.success() {
-        return Ok(());
-    }
     let said = String::from_utf8_lossy(&run.stderr);
-    let line = said.lines().find(|line| line.contains("rror")).or(said.lines().next()).unwrap_or_default();
+    let error = said.lines().find(|line| line.contains("rror"));
+    if run.status.success() {
+        return Ok(error.map_or(String::new(), |line| line.trim().to_owned()));
+    }
+    let line = error.or(said.lines().next()).unwrap_or_default();
     Err(fault(format!("gmsh failed ({}): {line}", run.status)))
 }
 
