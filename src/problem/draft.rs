@@ -204,8 +204,12 @@ impl Shape<'_> {
             let first = parts.next()?;
             parts.all(|other| other == first).then_some(first)
         };
+        if part.iter().max() != Some(&1) {
+            return None;
+        }
         let of_group: Option<Vec<usize>> = self.groups.iter().map(|&group| part_of(group)).collect();
-        let of_group = of_group.filter(|_| part.iter().max() == Some(&1))?;
+        // One group around both bodies meets itself.
+        let around = if let [only] = self.groups[..] { Some(only).filter(|_| of_group.is_none()) } else { None };
         let range = |which: usize, axis: usize| {
             let cells = (0..part.len()).filter(|&cell| part[cell] == which);
             let all = cells.flat_map(|cell| self.mesh.corners(cell)).map(|x| x[axis]);
@@ -217,6 +221,10 @@ impl Shape<'_> {
             if apart(a, b) { Some((axis, 0, [a[1], b[0]])) } else { apart(b, a).then_some((axis, 1, [b[1], a[0]])) }
         });
         let (axis, below, gap) = found?;
+        if let Some(around) = around {
+            return Some(self.met(axis, [around; 2], gap));
+        }
+        let of_group = of_group?;
         // Of each body the group that comes nearest to the other one.
         let facing = |which: usize, at: f64| {
             let own = self.groups.iter().zip(&of_group).filter(|(_, part)| **part == which).map(|(group, _)| *group);
@@ -229,15 +237,14 @@ impl Shape<'_> {
 
     fn met(&self, axis: usize, [lower, upper]: [usize; 2], gap: [f64; 2]) -> Story {
         let names = [lower, upper].map(|group| self.mesh.edge_groups[group].clone());
-        let condition = Condition {
-            group: names[0].clone(),
-            kind: "contact",
-            keys: vec![("partner", quoted(&names[1])), ("friction", number(0.0))],
-            why: String::new(),
-        };
+        let mut keys = vec![("friction", number(0.0))];
+        if lower != upper {
+            keys.insert(0, ("partner", quoted(&names[1])));
+        }
+        let condition = Condition { group: names[0].clone(), kind: "contact", keys, why: String::new() };
         let mut conditions = self.conditions(|group| (group == lower).then(|| condition.clone()));
         // The partner has the condition of its pair.
-        conditions.retain(|condition| condition.group != names[1]);
+        conditions.retain(|condition| lower == upper || condition.group != names[1]);
         let (speed, letter) = (Self::speed(), ["x", "y"][axis]);
         let middle = 0.5 * (gap[0] + gap[1]);
         let mut velocity = ["0".to_owned(), "0".to_owned()];
@@ -338,6 +345,21 @@ mod tests {
         assert_eq!((count, mesh.edge_groups.last().unwrap().as_str()), (2, "boundary"));
         let (again, count) = tagged(mesh.clone()).unwrap();
         assert_eq!((count, again), (0, mesh));
+    }
+
+    #[test]
+    fn two_bodies_in_one_group_meet_in_contact_of_the_group_with_itself() {
+        let mut mesh = rectangle([3.0, 1.0], [3, 1]).unwrap();
+        // Without the cell in the middle.
+        mesh.cells.remove(1);
+        mesh.cell_group.remove(1);
+        mesh.original = vec![];
+        mesh.edge_groups = vec!["around".to_owned()];
+        mesh.edges = (0..2).flat_map(|cell| (0..4).map(move |face| BoundaryEdge { cell, face, group: 0 })).collect();
+        let draft = draft(&mesh, "a.msh").unwrap();
+        let [Condition { kind, keys, .. }] = &draft.boundaries[..] else { panic!("{:?}", draft.boundaries) };
+        assert_eq!((*kind, keys.len(), keys[0].0), ("contact", 1, "friction"));
+        assert!(draft.velocity.0[0].contains("step"), "{:?}", draft.velocity);
     }
 
     #[test]
