@@ -87,8 +87,7 @@ impl Picture for Panels {
 
     fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn {
         let parts = area.split_evenly((self.0.len(), 1));
-        self.0.iter().zip(parts).try_for_each(|(chart, part)| chart.draw(&part))?;
-        area.present().map_err(|why| why.to_string())
+        self.0.iter().zip(parts).try_for_each(|(chart, part)| chart.draw(&part))
     }
 }
 
@@ -98,12 +97,6 @@ impl Picture for Chart {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn {
-        self.fill(area)
-    }
-}
-
-impl Chart {
-    fn fill<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn {
         let text = |why: DrawingAreaErrorKind<B::ErrorType>| why.to_string();
         let all = || self.lines.iter().flat_map(|line| &line.points);
         if all().next().is_none() {
@@ -138,7 +131,9 @@ impl Chart {
             [Scale::Linear, Scale::Linear] => self.paint(area, builder.build_cartesian_2d(x, y).map_err(text)?, decade),
         }
     }
+}
 
+impl Chart {
     /// Names what lies in a single decade of the ordinate, from `low`, inside of the chart: it has labels at its ends alone.
     fn name_between<B: DrawingBackend, X, Y>(
         &self,
@@ -212,7 +207,7 @@ impl Chart {
             let style = (FONT, 14).into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
             area.draw(&Text::new(line.name.clone(), (at.0 + SAMPLE + 8, at.1), style)).map_err(text)?;
         }
-        area.present().map_err(text)
+        Ok(())
     }
 }
 
