@@ -11,6 +11,8 @@ use std::path::{Path, PathBuf};
 const LARGEST: u64 = 1 << 30;
 /// Curves in a panel; more would not be told apart, and have further panels.
 const MOST: usize = 7;
+/// The largest number that is drawn, and what is drawn for larger ones: the range of an axis and its margins must be finite.
+const HIGHEST: f64 = 1e300;
 /// Points of a curve: more would fall on the same pixels.
 const POINTS: usize = 3000;
 
@@ -122,10 +124,11 @@ impl Table {
         self.columns.iter().position(|name| name == column)
     }
 
-    /// The points of a column over another one, without gaps, thinned to what a picture shows.
+    /// The points of a column over another one, without gaps, cut to [`HIGHEST`], and thinned to what a picture shows.
     fn points(&self, x: usize, y: usize) -> Points {
-        let all: Vec<(f64, f64)> =
-            self.rows.iter().map(|row| (row[x], row[y])).filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+        let cut = |value: f64| value.clamp(-HIGHEST, HIGHEST);
+        let points = self.rows.iter().map(|row| (row[x], row[y])).filter(|(x, y)| x.is_finite() && y.is_finite());
+        let all: Vec<(f64, f64)> = points.map(|(x, y)| (cut(x), cut(y))).collect();
         let step = all.len().div_ceil(POINTS).max(1);
         let last = all.len().saturating_sub(1);
         all.into_iter().enumerate().filter(|(k, _)| k % step == 0 || *k == last).map(|(_, point)| point).collect()
@@ -299,5 +302,15 @@ mod tests {
         }
         let titles: std::collections::BTreeSet<_> = charts.iter().map(|chart| &chart.title).collect();
         assert_eq!(titles.len(), charts.len(), "{titles:?}");
+    }
+
+    #[test]
+    fn numbers_whose_range_overflows_are_cut_and_the_picture_ends() {
+        let rows = vec![vec![0.0, 1e308, 2.0], vec![1.0, -1e308, 3.0], vec![2.0, 1.0, -1e308], vec![3.0, 2.0, 4.0]];
+        let charts = track("x", &Table { columns: ["t [s]", "a [N]", "b [m]"].map(str::to_owned).to_vec(), rows });
+        let lengths: Vec<usize> = charts.iter().map(|chart| chart.lines[0].points.len()).collect();
+        assert_eq!(lengths, [4, 4]);
+        let folder = tempfile::tempdir().unwrap();
+        save(&Panels(charts), &folder.path().join("x.svg")).unwrap();
     }
 }
