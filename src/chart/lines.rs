@@ -87,8 +87,7 @@ impl Picture for Panels {
 
     fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn {
         let parts = area.split_evenly((self.0.len(), 1));
-        self.0.iter().zip(parts).try_for_each(|(chart, part)| chart.draw(&part))?;
-        area.present().map_err(|why| why.to_string())
+        self.0.iter().zip(parts).try_for_each(|(chart, part)| chart.draw(&part))
     }
 }
 
@@ -98,12 +97,6 @@ impl Picture for Chart {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn {
-        self.fill(area)
-    }
-}
-
-impl Chart {
-    fn fill<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> Drawn {
         let text = |why: DrawingAreaErrorKind<B::ErrorType>| why.to_string();
         let all = || self.lines.iter().flat_map(|line| &line.points);
         if all().next().is_none() {
@@ -124,6 +117,10 @@ impl Chart {
         let x = range(self.scales[0], &mut all().map(|p| p.0));
         let y = range(self.scales[1], &mut all().map(|p| p.1));
         let decade = (self.scales[1] == Scale::Log && y.1 / y.0 < 11.0).then_some(y.0);
+        // The search for round numbers in such a range would not end.
+        if [x, y].iter().any(|(low, high)| !(high - low).is_finite()) {
+            return Err("the numbers are too large for an axis".to_owned());
+        }
         let (x, y) = (x.0..x.1, y.0..y.1);
         match self.scales {
             [Scale::Log, Scale::Log] => {
@@ -138,7 +135,9 @@ impl Chart {
             [Scale::Linear, Scale::Linear] => self.paint(area, builder.build_cartesian_2d(x, y).map_err(text)?, decade),
         }
     }
+}
 
+impl Chart {
     /// Names what lies in a single decade of the ordinate, from `low`, inside of the chart: it has labels at its ends alone.
     fn name_between<B: DrawingBackend, X, Y>(
         &self,
@@ -212,15 +211,18 @@ impl Chart {
             let style = (FONT, 14).into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
             area.draw(&Text::new(line.name.clone(), (at.0 + SAMPLE + 8, at.1), style)).map_err(text)?;
         }
-        area.present().map_err(text)
+        Ok(())
     }
 }
+
+/// Numbers that differ by less than this share of the largest one are equal: steps between them are near its rounding.
+const EQUAL: f64 = 1e-9;
 
 /// A range around numbers, with a margin of a twentieth. It is never empty.
 fn around(values: &mut dyn Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     let margin = match () {
-        () if high > low => 0.05 * (high - low),
+        () if high - low > EQUAL * high.abs().max(low.abs()) => 0.05 * (high - low),
         () if high == 0.0 => 1.0,
         () => 0.05 * high.abs(),
     };
@@ -291,4 +293,25 @@ fn decades(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
     let (low, high) = (low.log10().floor(), high.log10().ceil());
     (10_f64.powf(low), 10_f64.powf(if high > low { high } else { low + 1.0 }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_is_never_of_the_size_of_rounding_and_one_that_overflows_is_an_error() {
+        let of = |values: [f64; 2]| around(&mut values.into_iter());
+        assert_eq!(of([0.0, 0.0]), (-1.0, 1.0));
+        for values in [[1.0, 1.0], [1.0, 1.0 + f64::EPSILON], [-3.0, -3.0 * (1.0 + f64::EPSILON)]] {
+            let (low, high) = of(values);
+            assert!(high - low > 0.09 * values[0].abs(), "{values:?}: {low}..{high}");
+        }
+        let points = vec![(0.0, 1e308), (1.0, -1e308)];
+        let line = Line { name: String::new(), colour: 0, marker: Marker::Bare, stroke: Stroke::Full, points };
+        let scales = [Scale::Linear; 2];
+        let chart = Chart { title: String::new(), x: String::new(), y: String::new(), scales, lines: vec![line] };
+        let why = super::super::svg(&chart).unwrap_err();
+        assert!(why.contains("too large"), "{why}");
+    }
 }

@@ -160,8 +160,7 @@ impl Picture for Map {
         let left = self.raster.at()[0] as i32;
         let style = |size: i32| (FONT, size).into_text_style(area).color(&DARK).pos(Pos::new(HPos::Left, VPos::Top));
         area.draw(&Text::new(self.title.clone(), (left, 10), style(21))).map_err(text)?;
-        area.draw(&Text::new(self.about.clone(), (left, 37), style(16))).map_err(text)?;
-        area.present().map_err(text)
+        area.draw(&Text::new(self.about.clone(), (left, 37), style(16))).map_err(text)
     }
 }
 

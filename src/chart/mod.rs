@@ -62,7 +62,7 @@ pub trait Picture {
     /// Width and height, pixels.
     fn size(&self) -> (u32, u32);
 
-    /// Draws it on a white area of its size.
+    /// Draws it on a white area of its size, and does not end the picture: it may be a part of a larger one.
     ///
     /// # Errors
     /// There is nothing to draw, or the backend fails.
@@ -91,7 +91,7 @@ pub fn save<P: Picture>(picture: &P, path: &Path) -> Result<()> {
 
 fn svg<P: Picture>(picture: &P) -> std::result::Result<Vec<u8>, String> {
     let mut text = String::new();
-    picture.draw(&SVGBackend::with_string(&mut text, picture.size()).into_drawing_area())?;
+    whole(picture, SVGBackend::with_string(&mut text, picture.size()))?;
     if let Some(under) = picture.under() {
         let ([x, y], [width, height]) = (under.at(), under.size());
         let pixels =
@@ -113,8 +113,15 @@ fn png<P: Picture>(picture: &P) -> std::result::Result<Vec<u8>, String> {
     if let Some(under) = picture.under() {
         under.blend(&mut pixels, width as usize);
     }
-    picture.draw(&BitMapBackend::with_buffer(&mut pixels, (width, height)).into_drawing_area())?;
+    whole(picture, BitMapBackend::with_buffer(&mut pixels, (width, height)))?;
     encoded(&pixels, [width, height], png::ColorType::Rgb).map_err(|why| why.to_string())
+}
+
+/// Draws a picture and ends it. The end comes once, behind all parts: it closes the root of an SVG.
+fn whole<P: Picture, B: DrawingBackend>(picture: &P, backend: B) -> Drawn {
+    let area = backend.into_drawing_area();
+    picture.draw(&area)?;
+    area.present().map_err(|why| why.to_string())
 }
 
 /// The font comes with the program, because a machine without a desktop has no font.
@@ -138,4 +145,66 @@ fn encoded(
     writer.write_image_data(pixels)?;
     writer.finish()?;
     Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use quick_xml::events::Event;
+
+    /// Elements of an SVG. Its only root is `<svg>`, and nothing is behind it.
+    fn elements<P: Picture>(picture: &P) -> usize {
+        fonts();
+        let text = String::from_utf8(svg(picture).unwrap()).unwrap();
+        let mut reader = quick_xml::Reader::from_str(&text);
+        let (mut depth, mut roots, mut count) = (0, 0, 0);
+        loop {
+            // The reader itself refuses an end without its start.
+            match reader.read_event().unwrap() {
+                Event::Start(element) => {
+                    roots += usize::from(depth == 0 && element.name().as_ref() == b"svg");
+                    assert!(depth > 0 || roots == 1, "a second root");
+                    (depth, count) = (depth + 1, count + 1);
+                }
+                Event::Empty(_) => {
+                    assert!(depth > 0, "an element outside of the root");
+                    count += 1;
+                }
+                Event::End(_) => depth -= 1,
+                Event::Eof => break,
+                Event::Text(text) => assert!(depth > 0 || text.iter().all(u8::is_ascii_whitespace), "text outside"),
+                _ => assert!(depth > 0, "something outside of the root"),
+            }
+        }
+        assert_eq!((depth, roots), (0, 1));
+        count
+    }
+
+    fn chart(scale: Scale) -> Chart {
+        let line = |stroke, marker| Line {
+            name: "a < b & \"c\"".to_owned(),
+            colour: 2,
+            marker,
+            stroke,
+            points: vec![(1.0, 1.0), (2.0, 3.0), (1.5, 2.0)],
+        };
+        let lines = vec![line(Stroke::Full, Marker::Circle), line(Stroke::Dashed, Marker::Bare)];
+        Chart { title: "t".to_owned(), x: "x".to_owned(), y: "y".to_owned(), scales: [scale; 2], lines }
+    }
+
+    #[test]
+    fn each_svg_is_xml_with_one_root_and_all_panels_in_it() {
+        for scale in [Scale::Linear, Scale::Log] {
+            let one = elements(&chart(scale));
+            for count in 1..=3 {
+                let all = elements(&Panels(vec![chart(scale); count]));
+                // Panels are lower than a chart alone, and have fewer lines of the grid; none is missing as a whole.
+                assert!(all > count * one / 3, "{count} panels: {all} elements, one chart: {one}");
+            }
+        }
+        let bar = Bar { palette: Palette::Rising, range: [0.0, 1.0] };
+        let mut map = Map::new("m".to_owned(), String::new(), bar, [[0.0; 2], [1.0; 2]]);
+        map.line(&[[0.0; 2], [1.0; 2]], true);
+        assert!(elements(&map) > 1);
+    }
 }

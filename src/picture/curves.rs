@@ -9,8 +9,10 @@ use std::path::{Path, PathBuf};
 
 /// Bytes of the largest table.
 const LARGEST: u64 = 1 << 30;
-/// Curves in a panel; more would not be told apart.
+/// Curves in a panel; more would not be told apart, and have further panels.
 const MOST: usize = 7;
+/// The largest number that is drawn, and what is drawn for larger ones: the range of an axis and its margins must be finite.
+const HIGHEST: f64 = 1e300;
 /// Points of a curve: more would fall on the same pixels.
 const POINTS: usize = 3000;
 
@@ -122,19 +124,42 @@ impl Table {
         self.columns.iter().position(|name| name == column)
     }
 
-    /// The points of a column over another one, without gaps, thinned to what a picture shows.
+    /// The points of a column over another one, without gaps, cut to [`HIGHEST`], and thinned to what a picture shows.
     fn points(&self, x: usize, y: usize) -> Points {
-        let all: Vec<(f64, f64)> =
-            self.rows.iter().map(|row| (row[x], row[y])).filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+        let cut = |value: f64| value.clamp(-HIGHEST, HIGHEST);
+        let points = self.rows.iter().map(|row| (row[x], row[y])).filter(|(x, y)| x.is_finite() && y.is_finite());
+        let all: Vec<(f64, f64)> = points.map(|(x, y)| (cut(x), cut(y))).collect();
         let step = all.len().div_ceil(POINTS).max(1);
         let last = all.len().saturating_sub(1);
         all.into_iter().enumerate().filter(|(k, _)| k % step == 0 || *k == last).map(|(_, point)| point).collect()
     }
 }
 
-/// A panel of curves that share a unit; none where there is nothing to show.
-fn panel(title: &str, x: (&str, &str), unit: &str, curves: Vec<Named>) -> Option<Chart> {
-    let curves: Vec<_> = curves.into_iter().filter(|(_, points)| points.len() > 1).take(MOST).collect();
+/// The panels of curves that share a unit; none where there is nothing to show.
+fn split(title: &str, x: (&str, &str), unit: &str, curves: Vec<Named>) -> Vec<Chart> {
+    let parts = apart(curves.into_iter().filter(|(_, points)| points.len() > 1).collect());
+    let count = parts.len();
+    let title = |k: usize| if count > 1 { format!("{title} ({} of {count})", k + 1) } else { title.to_owned() };
+    parts.iter().enumerate().map(|(k, curves)| panel(&title(k), x, unit, curves)).collect()
+}
+
+/// Curves in parts of at most [`MOST`], in their order. Components of one quantity that follow each other stay together, unless these
+/// alone are more.
+fn apart(curves: Vec<Named>) -> Vec<Vec<Named>> {
+    let mut parts: Vec<Vec<Named>> = Vec::new();
+    for quantity in curves.chunk_by(|a, b| field_of(&a.0) == field_of(&b.0)) {
+        for some in quantity.chunks(MOST) {
+            match parts.last_mut() {
+                Some(part) if part.len() + some.len() <= MOST => part.extend_from_slice(some),
+                _ => parts.push(some.to_vec()),
+            }
+        }
+    }
+    parts
+}
+
+/// A panel of curves that share a unit.
+fn panel(title: &str, x: (&str, &str), unit: &str, curves: &[Named]) -> Chart {
     let largest = |of: fn(&(f64, f64)) -> f64| {
         curves.iter().flat_map(|(_, points)| points).map(of).fold(0.0, |most: f64, x| most.max(x.abs()))
     };
@@ -148,7 +173,7 @@ fn panel(title: &str, x: (&str, &str), unit: &str, curves: Vec<Named>) -> Option
     };
     let lines: Vec<Line> = curves.iter().enumerate().map(line).collect();
     let (x, y) = (label(x.0, &x_unit), if y_unit.is_empty() { String::new() } else { format!("[{y_unit}]") });
-    (!lines.is_empty()).then(|| Chart { title: title.to_owned(), x, y, scales: [Scale::Linear; 2], lines })
+    Chart { title: title.to_owned(), x, y, scales: [Scale::Linear; 2], lines }
 }
 
 fn ledger(table: &Table) -> Vec<Chart> {
@@ -158,9 +183,9 @@ fn ledger(table: &Table) -> Vec<Chart> {
         let curves: Vec<_> = columns.iter().filter_map(curve).collect();
         // What is 0 all the time says nothing.
         let speaks = |(_, points): &Named| points.iter().any(|(_, y)| *y != 0.0);
-        panel(title, ("t", "s"), unit, curves.into_iter().filter(speaks).collect())
+        split(title, ("t", "s"), unit, curves.into_iter().filter(speaks).collect())
     };
-    LEDGER.iter().filter_map(of).collect()
+    LEDGER.iter().flat_map(of).collect()
 }
 
 /// `name [unit]` of a column.
@@ -190,9 +215,9 @@ fn panels(name: &str, x: (&str, &str), curves: Vec<Curve>, key: impl Fn(&Curve) 
             true => format!("{name}: {}", first.replace('_', " ")),
             false => name.to_owned(),
         };
-        panel(&title, x, &unit, group.into_iter().map(|(name, _, points)| (name, points)).collect())
+        split(&title, x, &unit, group.into_iter().map(|(name, _, points)| (name, points)).collect())
     };
-    groups.into_iter().filter_map(of).collect()
+    groups.into_iter().flat_map(of).collect()
 }
 
 /// Numbers through time: a panel for each unit.
@@ -256,5 +281,36 @@ mod tests {
             charts.iter().map(|chart| chart.lines.iter().map(|line| line.name.as_str()).collect()).collect();
         assert_eq!(names, [vec!["a", "c"], vec!["b"]]);
         assert_eq!(charts[0].x, "t [ms]");
+    }
+
+    #[test]
+    fn each_of_many_curves_is_drawn_once_and_components_of_a_quantity_share_a_panel() {
+        // 12 forces of 2 components, one more than a panel has at an odd place, and a quantity of more components than a panel has.
+        let forces =
+            (0..12).flat_map(|k| [1, 2].map(|axis| format!("body{}_force_{axis}", ["a", "b"][k % 2].repeat(k + 1))));
+        let names: Vec<String> = forces.chain((0..MOST + 2).map(|k| format!("many_{k}"))).collect();
+        let columns: Vec<String> =
+            std::iter::once("t [s]".to_owned()).chain(names.iter().map(|n| format!("{n} [N/m]"))).collect();
+        let rows = vec![vec![0.0; columns.len()], vec![1.0; columns.len()]];
+        let charts = track("x", &Table { columns, rows });
+        let of = |chart: &Chart| chart.lines.iter().map(|line| line.name.clone()).collect::<Vec<_>>();
+        assert_eq!(charts.iter().flat_map(of).collect::<Vec<_>>(), names);
+        assert!(charts.iter().all(|chart| (1..=MOST).contains(&chart.lines.len())));
+        for name in names.iter().filter(|name| name.ends_with("force_1")) {
+            let chart = charts.iter().find(|chart| of(chart).contains(name)).unwrap();
+            assert!(of(chart).contains(&name.replace("force_1", "force_2")), "{name}");
+        }
+        let titles: std::collections::BTreeSet<_> = charts.iter().map(|chart| &chart.title).collect();
+        assert_eq!(titles.len(), charts.len(), "{titles:?}");
+    }
+
+    #[test]
+    fn numbers_whose_range_overflows_are_cut_and_the_picture_ends() {
+        let rows = vec![vec![0.0, 1e308, 2.0], vec![1.0, -1e308, 3.0], vec![2.0, 1.0, -1e308], vec![3.0, 2.0, 4.0]];
+        let charts = track("x", &Table { columns: ["t [s]", "a [N]", "b [m]"].map(str::to_owned).to_vec(), rows });
+        let lengths: Vec<usize> = charts.iter().map(|chart| chart.lines[0].points.len()).collect();
+        assert_eq!(lengths, [4, 4]);
+        let folder = tempfile::tempdir().unwrap();
+        save(&Panels(charts), &folder.path().join("x.svg")).unwrap();
     }
 }

@@ -86,7 +86,7 @@ impl Shade {
         Self::all(laws).into_iter().filter(|shade| is_usual(shade) || scalars.contains(&shade.name)).collect()
     }
 
-    /// Those of these names.
+    /// Those of these names, each once.
     ///
     /// # Errors
     /// A name that there is not, with those that there are.
@@ -99,7 +99,8 @@ impl Shade {
                 Error::input(format!("there is no field `{name}` to draw"), remedy)
             })
         };
-        names.iter().map(find).collect()
+        let is_first = |(k, name): &(usize, &String)| !names[..*k].contains(name);
+        names.iter().enumerate().filter(is_first).map(|(_, name)| find(name)).collect()
     }
 
     /// Its number at a point.
@@ -137,6 +138,8 @@ mod tests {
         assert!(names(&Shade::usual(&plastic)).contains(&"plastic_strain".to_owned()));
         let why = Shade::named(&["presure".to_owned()], &elastic).unwrap_err().to_string();
         assert!(why.contains("did you mean `pressure`"), "{why}");
+        let twice = ["speed", "pressure", "speed"].map(str::to_owned);
+        assert_eq!(names(&Shade::named(&twice, &elastic).unwrap()), ["speed", "pressure"]);
     }
 
     #[test]
