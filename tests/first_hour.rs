@@ -268,6 +268,13 @@ fn plot_refuses_what_it_cannot_draw_and_names_what_it_can() {
     assert!(refused(&["runs/gap", "--field", "presure"]).contains("did you mean `pressure`"));
     assert!(refused(&["runs/gap", "--step", "7"]).contains("there are those after 0"));
     assert!(refused(&["nowhere"]).contains("not the folder of a run"));
+    for time in ["nan", "inf", "-inf"] {
+        assert!(refused(&["runs/gap", &format!("--time={time}")]).contains("--time is not a finite number"), "{time}");
+    }
+    let early = dgmpm(&["plot", "runs/gap", "--field", "speed,speed", "--time", "-1"], folder);
+    let [drawn, note] = [early.stdout, early.stderr].map(|text| String::from_utf8(text).unwrap());
+    assert!(drawn.contains("1 picture in") || note.contains("1 picture in"), "{drawn}{note}");
+    assert!(format!("{drawn}{note}").contains("the nearest one is shown, after step 0, t = 0 s"), "{drawn}{note}");
     assert!(refused(&["runs/gap", "--field", "pressure", "--range", "2,1"]).contains("--range"));
     let drawn = said(&["plot", "runs/gap", "--format", "svg", "--field", "speed", "--step", "0"], folder);
     assert!(drawn.contains("1 picture in"), "{drawn}");

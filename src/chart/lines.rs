@@ -104,12 +104,7 @@ impl Picture for Chart {
         }
         area.fill(&WHITE).map_err(text)?;
         let mut builder = ChartBuilder::on(area);
-        builder
-            .caption(&self.title, (FONT, 20))
-            .margin(12)
-            .margin_right(230)
-            .x_label_area_size(48)
-            .y_label_area_size(70);
+        builder.caption(&self.title, (FONT, 20)).margin(12).margin_right(230).x_label_area_size(48);
         let range = |scale: Scale, values: &mut dyn Iterator<Item = f64>| match scale {
             Scale::Log => decades(values),
             Scale::Linear => around(values),
@@ -121,6 +116,7 @@ impl Picture for Chart {
         if [x, y].iter().any(|(low, high)| !(high - low).is_finite()) {
             return Err("the numbers are too large for an axis".to_owned());
         }
+        builder.y_label_area_size(beside(self.scales[1], y));
         let (x, y) = (x.0..x.1, y.0..y.1);
         match self.scales {
             [Scale::Log, Scale::Log] => {
@@ -171,7 +167,10 @@ impl Chart {
         Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
         let text = |why: DrawingAreaErrorKind<B::ErrorType>| why.to_string();
-        let label = |scale: Scale| move |x: &f64| if scale == Scale::Log { format!("{x:.0e}") } else { round(*x) };
+        let plane = chart.as_coord_spec();
+        let (x, y) = (plane.x_spec().range(), plane.y_spec().range());
+        let [x, y] = [(self.scales[0], x), (self.scales[1], y)]
+            .map(|(scale, range)| move |value: &f64| label(scale, (range.start, range.end), *value));
         chart
             .configure_mesh()
             .max_light_lines(if self.scales.contains(&Scale::Log) { 10 } else { 1 })
@@ -179,8 +178,8 @@ impl Chart {
             .light_line_style(RGBColor(240, 240, 240))
             .x_desc(&self.x)
             .y_desc(&self.y)
-            .x_label_formatter(&label(self.scales[0]))
-            .y_label_formatter(&label(self.scales[1]))
+            .x_label_formatter(&x)
+            .y_label_formatter(&y)
             .label_style((FONT, 15))
             .axis_desc_style((FONT, 17))
             .draw()
@@ -229,13 +228,32 @@ fn around(values: &mut dyn Iterator<Item = f64>) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// A number of a linear axis, without the last digits of its rounding; numbers have units in which they are not far from 1.
-fn round(x: f64) -> String {
-    if x.abs() < 1e-13 {
+/// The label of a number on an axis of this range: with as many digits as tell its steps apart, and without those of rounding.
+fn label(scale: Scale, (low, high): (f64, f64), x: f64) -> String {
+    if scale == Scale::Log {
+        return format!("{x:.0e}");
+    }
+    let (most, width) = (low.abs().max(high.abs()), high - low);
+    if x.abs() < 1e-6 * width {
         return "0".to_owned();
     }
-    let digits = format!("{x:.3e}").parse::<f64>().unwrap_or(x);
-    if digits != 0.0 && digits.abs() < 1e-3 { format!("{digits:e}") } else { digits.to_string() }
+    if (1e-3..1e6).contains(&most) {
+        // Steps are a tenth of the range or half of that.
+        let digits = (2.5 - width.log10()).floor().clamp(0.0, 12.0) as usize;
+        let text = format!("{x:.digits$}");
+        return if digits == 0 { text } else { text.trim_end_matches('0').trim_end_matches('.').to_owned() };
+    }
+    let digits = (2.5 + (most / width).log10()).floor().clamp(1.0, 12.0) as usize;
+    let digits = format!("{x:.digits$e}");
+    digits.parse::<f64>().map_or(digits, |rounded| format!("{rounded:e}"))
+}
+
+/// Room for the labels of an ordinate and for its name, pixels.
+fn beside(scale: Scale, (low, high): (f64, f64)) -> u32 {
+    // The longest labels are those of numbers between round ones: a third of the range is none.
+    let between = (1..3).map(|k| low + f64::from(k) / 3.0 * (high - low));
+    let longest = between.map(|x| label(scale, (low, high), x).len()).max().unwrap_or(0);
+    (36 + 8 * longest as u32).max(70)
 }
 
 /// Half of the length of the line in a legend, pixels.
@@ -313,5 +331,25 @@ mod tests {
         let chart = Chart { title: String::new(), x: String::new(), y: String::new(), scales, lines: vec![line] };
         let why = super::super::svg(&chart).unwrap_err();
         assert!(why.contains("too large"), "{why}");
+    }
+
+    #[test]
+    fn labels_of_neighbouring_steps_differ_and_have_no_digits_of_rounding() {
+        // The middle of an axis, and its width.
+        let large: [(f64, f64); 4] = [(2e5, 3.0), (7e3, 1e-4), (-5e8, 1e3), (1e12, 1e12)];
+        for (middle, width) in large.into_iter().chain([(0.0, 1.0), (1.0, 1e-6), (3e-7, 1e-9), (0.0, 9e-15)]) {
+            let range = (middle - 0.5 * width, middle + 0.5 * width);
+            let step = 10_f64.powf((0.1 * width).log10().floor());
+            let first = (range.0 / step).ceil();
+            let labels: Vec<String> =
+                (0..10).map(|k| label(Scale::Linear, range, (first + f64::from(k)) * step)).collect();
+            let distinct: std::collections::BTreeSet<_> = labels.iter().collect();
+            assert_eq!(distinct.len(), labels.len(), "{labels:?}");
+            let room = beside(Scale::Linear, range) as usize;
+            assert!(labels.iter().all(|label| 36 + 8 * label.len() <= room.max(70) + 8), "{labels:?}: {room}");
+        }
+        let of = |range, x| label(Scale::Linear, range, x);
+        assert_eq!([of((-1.1, 1.1), 0.1 + 0.2), of((-1.1, 1.1), 1e-17), of((0.0, 120.0), 60.0)], ["0.3", "0", "60"]);
+        assert_eq!([of((0.99, 1.01), 1.0025), of((-2e-9, 2e-9), -1e-9)], ["1.0025", "-1e-9"]);
     }
 }

@@ -1,6 +1,6 @@
 //! Curves of the tables of a run: energy and momentum over time, numbers through time, samples along lines.
 
-use super::unit::{label, prefixed, short};
+use super::unit::{label, prefixed, scaled, short};
 use crate::chart::{Chart, Line, Marker, Panels, Scale, Stroke, save};
 use crate::error::{Error, Place, Result};
 use crate::file;
@@ -126,7 +126,8 @@ impl Table {
 
     /// The points of a column over another one, without gaps, cut to [`HIGHEST`], and thinned to what a picture shows.
     fn points(&self, x: usize, y: usize) -> Points {
-        let cut = |value: f64| value.clamp(-HIGHEST, HIGHEST);
+        // What is nearer to 0 than the inverse of the largest number has too few digits for an axis.
+        let cut = |value: f64| if value.abs() < HIGHEST.recip() { 0.0 } else { value.clamp(-HIGHEST, HIGHEST) };
         let points = self.rows.iter().map(|row| (row[x], row[y])).filter(|(x, y)| x.is_finite() && y.is_finite());
         let all: Vec<(f64, f64)> = points.map(|(x, y)| (cut(x), cut(y))).collect();
         let step = all.len().div_ceil(POINTS).max(1);
@@ -163,7 +164,7 @@ fn panel(title: &str, x: (&str, &str), unit: &str, curves: &[Named]) -> Chart {
     let largest = |of: fn(&(f64, f64)) -> f64| {
         curves.iter().flat_map(|(_, points)| points).map(of).fold(0.0, |most: f64, x| most.max(x.abs()))
     };
-    let ((x_unit, x_size), (y_unit, y_size)) = (prefixed(x.1, largest(|p| p.0)), prefixed(unit, largest(|p| p.1)));
+    let ((x_unit, x_size), (y_unit, y_size)) = (scaled(x.1, largest(|p| p.0)), scaled(unit, largest(|p| p.1)));
     let line = |(k, (name, points)): (usize, &Named)| Line {
         name: name.clone(),
         colour: [2, 4, 3, 5, 1, 6, 0][k % MOST],

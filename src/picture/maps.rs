@@ -37,6 +37,7 @@ pub struct Maps {
     is_initial: bool,
     is_single: bool,
     range: Option<[f64; 2]>,
+    far: Option<String>,
 }
 
 /// The numbers of a field at the corners of the parts of all cells, and where these are.
@@ -66,24 +67,34 @@ impl Maps {
     /// unit of the field.
     ///
     /// # Errors
-    /// A folder without a run or without a snapshot of that time; a field that there is not.
+    /// A folder without a run or without a snapshot after that step; a time that is not finite; a field that there is not.
     pub fn new(folder: &Folder, names: &[String], when: When, range: Option<[f64; 2]>) -> Result<Self> {
         let mut series = Series::of(folder)?.not_empty()?;
         let shades = if names.is_empty() { Shade::usual(&series.laws) } else { Shade::named(names, &series.laws)? };
+        let mut far = None;
         let chosen = match when {
             When::All => None,
             When::End => Some(series.files.len() - 1),
             When::Step(step) => Some(place_of(&series, step)?),
+            When::Time(time) if !time.is_finite() => {
+                return Err(Error::input("--time is not a finite number", "give seconds, such as --time 1e-3"));
+            }
             When::Time(time) => {
-                let off = |times: &[f64], k: usize| (times[k] - time).abs();
                 let times = series.times()?;
-                (0..times.len()).min_by(|&a, &b| off(&times, a).total_cmp(&off(&times, b)))
+                let (nearest, is_far) = nearest(&times, time);
+                far = is_far.then(|| far_from(time, series.files[nearest].0, times[nearest]));
+                Some(nearest)
             }
         };
         if let Some(chosen) = chosen {
             series.files = vec![series.files.swap_remove(chosen)];
         }
-        Ok(Self { series, shades, is_initial: false, is_single: when == When::End, range })
+        Ok(Self { series, shades, is_initial: false, is_single: when == When::End, range, far })
+    }
+
+    /// A note where the snapshot nearest to a time is far from it.
+    pub fn far(&self) -> Option<&str> {
+        self.far.as_deref()
     }
 
     /// On the initial body.
@@ -189,6 +200,24 @@ impl Maps {
     }
 }
 
+/// The place of the time nearest to `time` among rising ones, and whether it is off by more than half of the distance to its neighbours.
+fn nearest(times: &[f64], time: f64) -> (usize, bool) {
+    let off = |k: usize| (times[k] - time).abs();
+    let nearest = (0..times.len()).min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(0);
+    let around = &times[nearest.saturating_sub(1)..(nearest + 2).min(times.len())];
+    let spacing = around.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    // A time in the middle of two is not far from either of them, whatever its rounding.
+    (nearest, off(nearest) > 0.5 * spacing + 1e-9 * times[nearest].abs())
+}
+
+fn far_from(time: f64, step: usize, shown: f64) -> String {
+    let [(unit, size), (shown_unit, shown_size)] = [time, shown].map(|t| prefixed("s", t.abs()));
+    let [time, shown] = [short(time / size), short(shown / shown_size)];
+    format!(
+        "no snapshot is near t = {time} {unit}: the nearest one is shown, after step {step}, t = {shown} {shown_unit}"
+    )
+}
+
 /// The place of the snapshot after a step.
 fn place_of(series: &Series, step: usize) -> Result<usize> {
     let known: Vec<String> = series.files.iter().map(|(step, _)| step.to_string()).collect();
@@ -226,5 +255,21 @@ impl Sheet {
                 map.raster().fill([a, c, d], shade.palette, range);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_outside_of_the_run_is_far_from_its_nearest_snapshot_and_one_inside_is_not() {
+        let times = [0.0, 1.0, 2.0, 4.0];
+        let at = |time| nearest(&times, time);
+        assert_eq!([0.5, 1.4, 3.0, 3.1, 4.0].map(at), [(0, false), (1, false), (2, false), (3, false), (3, false)]);
+        assert_eq!([-0.4, -0.6, 4.9, 5.1].map(at), [(0, false), (0, true), (3, false), (3, true)]);
+        assert_eq!([nearest(&[2.0], 2.0), nearest(&[2.0], 2.1)], [(0, false), (0, true)]);
+        let said = far_from(-1.0, 120, 2.5e-3);
+        assert!(said.contains("t = -1 s") && said.contains("after step 120, t = 2.5 ms"), "{said}");
     }
 }

@@ -16,8 +16,23 @@ pub fn prefixed(unit: &str, largest: f64) -> (String, f64) {
     (format!("{}{unit}", PREFIXES[(power + PLAIN) as usize]), 1000_f64.powi(power))
 }
 
+/// The same, also for numbers that no prefix makes short: with a power of 1000 before the unit, such as `1e-15 kg/s`. What is nearer to 0
+/// than a power can say stays as it is.
+pub fn scaled(unit: &str, largest: f64) -> (String, f64) {
+    let (name, size) = prefixed(unit, largest);
+    let rest = largest / size;
+    if (1e-3..1e6).contains(&rest) || !(1e-300..1e305).contains(&largest) {
+        return (name, size);
+    }
+    let power = 3 * ((largest.log10() + 1e-9) / 3.0).floor() as i32;
+    (format!("1e{power} {unit}").trim_end().to_owned(), 10_f64.powi(power))
+}
+
 /// Four digits of a number.
 pub fn short(x: f64) -> String {
+    if x.abs() >= 1e9 {
+        return format!("{x:.3e}");
+    }
     let digits = (3 - x.abs().max(1e-300).log10().floor() as i32).clamp(0, 6) as usize;
     let text = format!("{x:.digits$}");
     if digits == 0 { text } else { text.trim_end_matches('0').trim_end_matches('.').to_owned() }
@@ -43,5 +58,17 @@ mod tests {
             let in_unit = x / prefixed(unit, x).1;
             assert!((0.999..1000.0).contains(&in_unit), "{x}: {in_unit}");
         }
+    }
+
+    #[test]
+    fn numbers_that_no_prefix_makes_short_have_a_power_before_the_unit() {
+        let of = |unit: &str, x: f64| scaled(unit, x).0;
+        assert_eq!([of("kg/s", 3e-15), of("", 2e9), of("Pa", 4e300)], ["1e-15 kg/s", "1e9", "1e300 Pa"]);
+        assert_eq!([of("kg/s", 7e3), of("", 1.2), of("Pa", 2e8), of("J/m", 0.0)], ["kg/s", "", "MPa", "J/m"]);
+        for x in [1e-300, 3e-15, 5e17, 1e300] {
+            let in_unit = x / scaled("kg/s", x).1;
+            assert!((0.999..1000.0).contains(&in_unit), "{x}: {in_unit}");
+        }
+        assert_eq!(short(1e300), "1.000e300");
     }
 }

@@ -17,7 +17,7 @@ pub struct Args {
     #[arg(long, value_name = "N", conflicts_with_all = ["time", "all"])]
     pub step: Option<usize>,
     /// The snapshot nearest to this time, s
-    #[arg(long, value_name = "T", conflicts_with = "all")]
+    #[arg(long, value_name = "T", conflicts_with = "all", allow_negative_numbers = true)]
     pub time: Option<f64>,
     /// All snapshots, with the same colours
     #[arg(long)]

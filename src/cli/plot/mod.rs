@@ -19,7 +19,10 @@ pub fn run(args: &Args) -> Result<()> {
     let ending = args.format.ending();
     let mut files: Vec<PathBuf> = Vec::new();
     match Maps::new(&folder, &args.field, args.when(), args.range()?) {
-        Ok(maps) => files.extend(maps.initial(args.initial).draw(&out, ending)?),
+        Ok(maps) => {
+            maps.far().into_iter().for_each(note);
+            files.extend(maps.initial(args.initial).draw(&out, ending)?);
+        }
         // A run without snapshots has curves, and may have been made for them.
         Err(why) if args.wants_maps() || !folder.scene().is_file() => return Err(why),
         Err(_) => note("the run has no snapshot, and so no map: add an [[output]] of kind = \"fields\""),
