@@ -308,9 +308,7 @@ fn the_default_grows_by_next_to_nothing_at_rest_in_compression_shear_or_tension(
 
 #[test]
 fn conditions_that_remember_begin_with_the_memory_of_a_start() {
-    for condition in ["unilateral", "foundation"] {
-        // It panicked: the state of the analysis had no memory of conditions.
-        let rows = said(&["--body", "2,2", "--boundary", condition, "--degree", "1"]);
-        assert!(rows.len() > 1, "{condition}: {rows:?}");
-    }
+    // It panicked: the state of the analysis had no memory of conditions.
+    let rows = said(&["--body", "2,2", "--boundary", "unilateral", "--degree", "1"]);
+    assert!(rows.len() > 1, "{rows:?}");
 }
