@@ -5,8 +5,9 @@
 # make effects  what each effect costs the standard scene: docs/effects.md
 # make proof    that effects which a scene does not ask for cost nothing (ten minutes)
 # make faults   kills, full disks, corrupted bytes: the table of docs/reliability.md (some minutes)
+# make paraview   all kinds of exported files in the real ParaView: docs/img/paraview.png
 # make bench    the speed of the step on this machine: tables and roofline of docs/performance.md
-.PHONY: help setup build demo test study hard-cases effects proof faults bench clean
+.PHONY: help setup build demo test study hard-cases effects proof faults paraview bench clean
 
 help:
 	@echo "make demo    install what is missing, build, run the paper's impact with all methods, draw its figures"
@@ -16,6 +17,7 @@ help:
 	@echo "make effects  measure what each effect costs (some minutes): src/effects/measured.csv, docs/effects.md"
 	@echo "make proof   show that what a scene does not ask for costs nothing (ten minutes)"
 	@echo "make faults  kill runs, fill disks, corrupt files (some minutes) and write docs/reliability.md again"
+	@echo "make paraview   open all kinds of exported files in the real ParaView (installs it), and draw docs/img/paraview.png"
 	@echo "make bench   measure the speed (ten minutes): runs/bench/, docs/performance.md, docs/img/roofline.svg"
 	@echo "make build   the program; its last line says where cargo has put it"
 	@echo "make setup   only install what is missing (Debian packages, .venv)"
@@ -48,6 +50,9 @@ proof: setup
 
 faults: build
 	@DGMPM="$$(tools/program.sh)" python3 tools/faults.py
+
+paraview: build
+	@tools/paraview.sh
 
 bench: build
 	@tools/bench.sh

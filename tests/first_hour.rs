@@ -254,6 +254,50 @@ fn unknown_files_are_refused(folder: &Path) {
 }
 
 #[test]
+fn new_seed_and_preprocess_do_not_write_over_a_file_that_they_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes");
+    let (mesh, scene) = ("square_impact.msh", "square_impact.toml");
+    [mesh, scene].iter().for_each(|name| drop(std::fs::copy(from.join(name), folder.join(name)).unwrap()));
+    let bytes = |name: &str| std::fs::read(folder.join(name)).unwrap();
+    let before = [mesh, scene].map(bytes);
+    // By the same name and by another path to it.
+    let beside = folder.join("..").join(folder.file_name().unwrap()).join(mesh);
+    for (command, out) in [
+        (["new", mesh], mesh),
+        (["new", mesh], beside.to_str().unwrap()),
+        (["seed", scene], scene),
+        (["seed", scene], mesh),
+        (["preprocess", scene], scene),
+        (["preprocess", scene], mesh),
+    ] {
+        let run = dgmpm(&[&command[..], &["--out", out, "--force"]].concat(), folder);
+        let message = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert_eq!(run.status.code(), Some(2), "{command:?} --out {out}: {message}");
+        assert!(message.contains("is read by this command") && message.contains("--out"), "{command:?}: {message}");
+        assert_eq!([mesh, scene].map(bytes), before, "{command:?} --out {out}");
+    }
+}
+
+#[test]
+fn what_gmsh_says_of_a_wrong_geometry_reaches_the_user() {
+    if !has_gmsh() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("bad.geo"), "Point(1) = {0, 0, 0};\nLine(1) = {1, 2;\n").unwrap();
+    let run = dgmpm(&["new", "bad.geo"], folder.path());
+    let message = String::from_utf8_lossy(&run.stderr).into_owned();
+    // Gmsh names the line and what it met there.
+    assert!(
+        run.status.code() == Some(2) && message.contains("bad.geo") && message.contains("syntax error"),
+        "{message}"
+    );
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left behind");
+}
+
+#[test]
 fn plot_refuses_what_it_cannot_draw_and_names_what_it_can() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

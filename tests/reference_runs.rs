@@ -154,6 +154,9 @@ fn every_exported_file_is_read_back_as_the_snapshots_have_it() {
         let degree_set = format!("scheme.degree={degree}");
         let sets = [deformed, moving, &degree_set, "time.end=2e-5", "output.0.every=1e-5"];
         let run = exported(&format!("plate-{degree}"), Path::new("meshes/plate_hole.toml"), &sets);
+        let folder = run.to_str().unwrap();
+        dgmpm(&["export", folder, "--format", "vtkhdf"]);
+        dgmpm(&["export", folder, "--format", "vtu,xdmf,vtkhdf", "--deformed"]);
         python::run(&python, "tests/python/exported_run.py", [run.as_os_str(), "--limit".as_ref(), "1e-12".as_ref()]);
         python::run_dolfinx("tests/python/dolfinx_run.py", [&run]);
         python::run(&python, "tests/python/run_folder.py", [&run]);

@@ -14,6 +14,10 @@ pub struct Args {
     /// Formats, separated by commas
     #[arg(long, value_delimiter = ',', default_values_t = [Format::Vtu, Format::Xdmf])]
     format: Vec<Format>,
+    /// Show grid and points where they are at each time, X + u, in files whose names end in _deformed [default: in the initial
+    /// configuration, X]
+    #[arg(long)]
+    deformed: bool,
 }
 
 /// What is written.
@@ -23,22 +27,30 @@ pub enum Format {
     Vtu,
     /// XDMF + HDF5 time series, and the mesh alone
     Xdmf,
+    /// VTKHDF of grid and material points, a file for all times: ParaView 5.12 or later
+    Vtkhdf,
 }
 
 impl std::fmt::Display for Format {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(if *self == Format::Vtu { "vtu" } else { "xdmf" })
+        f.write_str(match self {
+            Format::Vtu => "vtu",
+            Format::Xdmf => "xdmf",
+            Format::Vtkhdf => "vtkhdf",
+        })
     }
 }
 
 /// Runs it.
 pub fn run(args: &Args) -> Result<()> {
     let export = Export::new(&Folder::new(&args.run))?;
-    if args.format.contains(&Format::Vtu) {
-        export.vtu()?;
-    }
-    if args.format.contains(&Format::Xdmf) {
-        export.xdmf()?;
+    let export = if args.deformed { export.deformed() } else { export };
+    for format in &args.format {
+        match format {
+            Format::Vtu => export.vtu()?,
+            Format::Xdmf => export.xdmf()?,
+            Format::Vtkhdf => export.vtkhdf()?,
+        }
     }
     say(format!("{} snapshots exported to {}", export.count(), export.out().display()));
     Ok(())

@@ -23,13 +23,13 @@ use crate::error::{Error, Place, Result};
 use crate::file::memory;
 
 /// Bytes per chunk: large enough for the disk, small enough for HDF5's cache of 1 MiB.
-const CHUNK_BYTES: usize = 256 * 1024;
+pub(super) const CHUNK_BYTES: usize = 256 * 1024;
 /// Arrays below this many bytes are stored whole, as chunks would only add overhead.
 const SMALL_BYTES: usize = 8 * 1024;
 /// Deflate compresses at most 1032 to 1. A dataset that claims more bytes than this times those that it stores is damaged.
 const LARGEST_RATIO: u64 = 1100;
 /// After a byte shuffle, levels 1, 4, 9 compress a smooth S2 state to .467, .463, .457 of its size at 70, 40, 6 MB/s.
-const DEFLATE_LEVEL: u8 = 1;
+pub(super) const DEFLATE_LEVEL: u8 = 1;
 
 /// A file that is open for reading, with its path and remedy for messages.
 pub struct Reader {

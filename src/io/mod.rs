@@ -4,7 +4,7 @@
 //! ([`cloud_file`]), the matrices ([`operators_file`]) and the state at a time ([`snapshot`]). Meshes come from Gmsh
 //! ([`gmsh`]), and from VTU and XDMF files of other programs ([`unstructured`]); [`import`] tells what a file is. For other programs
 //! there is an output model ([`grid`]) that knows nothing of a solver, and one writer per
-//! format: [`vtu`], [`pvd`], [`xdmf`], [`csv`]. Loads over time come from CSV too ([`LoadTable`]).
+//! format: [`vtu`], [`pvd`], [`vtkhdf`], [`xdmf`], [`csv`]. Loads over time come from CSV too ([`LoadTable`]).
 //!
 //! A file appears under its name only when it is whole ([`pending`]); what is read is checked before it is used. The folder of a run has
 //! a list of the files that the program has made there ([`own`]).
@@ -30,6 +30,7 @@ pub mod pvd;
 pub mod snapshot;
 pub mod store;
 pub mod unstructured;
+pub mod vtkhdf;
 pub mod vtu;
 pub mod xdmf;
 mod xml;

@@ -23,14 +23,19 @@ use super::seal;
 use crate::error::Result;
 
 /// VTK's numbers of kinds of cells.
-const VERTEX: u8 = 1;
+pub(super) const VERTEX: u8 = 1;
 const QUAD: u8 = 9;
 const LAGRANGE_QUADRILATERAL: u8 = 70;
+
+/// VTK's number of the cells of a grid of this degree.
+pub(super) fn kind_of_grid(degree: usize) -> u8 {
+    if degree <= 1 { QUAD } else { LAGRANGE_QUADRILATERAL }
+}
 
 /// Writes a grid: Lagrange quadrilaterals (VTK type 70) of degree N, bilinear ones (type 9) for N = 0 and 1.
 pub fn write_grid(path: &Path, grid: &HighOrderGrid) -> Result<()> {
     grid.check()?;
-    let kind = if grid.degree <= 1 { QUAD } else { LAGRANGE_QUADRILATERAL };
+    let kind = kind_of_grid(grid.degree);
     let mut piece = Piece::begin(grid.points.len(), grid.cells(), grid.groups.as_ref());
     piece.fields("PointData", &grid.point_fields);
     piece.fields("CellData", &grid.cell_fields);

@@ -9,7 +9,7 @@ use crate::operators::Certificate;
 
 /// The grid with its fields at the Lagrange nodes of each cell, discontinuous between cells. Stresses come from the
 /// law, at the value of the polynomial F.
-pub fn grid(mesh: &Mesh, solution: &Solution, fields: &[Field]) -> HighOrderGrid {
+pub fn grid(mesh: &Mesh, solution: &Solution, fields: &[Field], positions: Positions) -> HighOrderGrid {
     let degree = solution.basis.len() - 1;
     let mut out = HighOrderGrid::of_mesh(mesh, degree);
     let nodes = lagrange_quad_nodes(degree);
@@ -17,7 +17,35 @@ pub fn grid(mesh: &Mesh, solution: &Solution, fields: &[Field]) -> HighOrderGrid
     let points = (0..mesh.cells.len()).flat_map(|cell| weights.iter().map(move |at| (cell, at)));
     let points: Vec<_> = points.map(|(cell, (xi, w))| (cell, solution.combine(cell, *xi, w))).collect();
     out.point_fields = fields.iter().map(|&field| values(field, solution, &points)).collect();
+    if positions == Positions::Deformed {
+        move_points(&mut out.points, &values(Field::Displacement, solution, &points));
+    }
     out
+}
+
+/// Moves points by their displacement u: x = X + u, from the initial configuration to the present one.
+fn move_points(points: &mut [[f64; 3]], displacement: &grid::Field) {
+    let moved = points.iter_mut().zip(displacement.values.as_chunks::<3>().0);
+    moved.for_each(|(x, u)| (0..3).for_each(|i| x[i] += u[i]));
+}
+
+/// Where points are shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Positions {
+    /// Where they were in the initial configuration, X.
+    Initial,
+    /// Where they are at the time, x = X + u. Without a displacement that is X.
+    Deformed,
+}
+
+impl Positions {
+    /// The words for files.
+    pub fn words(self) -> &'static str {
+        match self {
+            Positions::Initial => "X, in the initial configuration",
+            Positions::Deformed => "x = X + u, at the time",
+        }
+    }
 }
 
 /// The material points as vertices, with their fields and the number of their cell.
@@ -30,18 +58,23 @@ pub fn points(
     virtual_points: &[bool],
     solution: &Solution,
     fields: &[Field],
+    positions: Positions,
 ) -> PointCloud {
     let place = |cell: usize| {
         let corners = mesh.corners(cell);
         cloud.of(cell).iter().map(move |&xi| map::position(&corners, xi))
     };
-    let positions = (0..mesh.cells.len()).flat_map(place).map(|[x, y]| [x, y, 0.0]).collect();
+    let mut places: Vec<_> = (0..mesh.cells.len()).flat_map(place).map(|[x, y]| [x, y, 0.0]).collect();
+    if positions == Positions::Deformed {
+        let displacement = point_fields(mesh, cloud, solution, &[Field::Displacement]);
+        displacement.iter().for_each(|field| move_points(&mut places, field));
+    }
     let mut all = point_fields(mesh, cloud, solution, fields);
     let cells = (0..mesh.cells.len()).flat_map(|cell| cloud.of(cell).iter().map(move |_| mesh.number(cell) as f64));
     all.push(grid::Field::new("cell", Kind::Scalar, cells.collect()));
     let is_virtual = |p: usize| f64::from(u8::from(virtual_points.get(p) == Some(&true)));
     all.push(grid::Field::new("virtual", Kind::Scalar, (0..cloud.len()).map(is_virtual).collect()));
-    PointCloud { points: positions, fields: all, about: String::new() }
+    PointCloud { points: places, fields: all, about: String::new() }
 }
 
 /// Fields at the material points.

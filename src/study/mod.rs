@@ -8,6 +8,7 @@
 
 mod case;
 mod choice;
+mod compared;
 mod front;
 mod measure;
 mod plot;
@@ -23,6 +24,7 @@ mod words;
 
 pub use case::{Case, Series};
 pub use choice::{Aim, Choice, ranked};
+pub use compared::{Comparison, compared};
 pub use front::{Answer, answers, cost, front};
 pub use measure::Measure;
 pub use plot::{Axis, plot};

@@ -26,6 +26,8 @@ pub struct Request {
     pub refinements: Vec<f64>,
     /// Names of layouts of ADER-DGMPM; empty: that of the scene.
     pub layouts: Vec<String>,
+    /// What is compared beside them, each as `KEY=VALUE|VALUE..`, such as `curl.control=rotation|off`: keys of the scene.
+    pub compare: Vec<String>,
     /// Degree and refinement of the reference run; empty: one degree more than the largest, on the finest mesh.
     pub reference: Vec<f64>,
     /// What settings are compared by: standard, l1 or the name of a quantity of the scene; empty: standard.
@@ -104,8 +106,29 @@ impl Request {
         }
     }
 
+    /// All ways to choose one value of each key that is compared.
+    fn compared(&self) -> Result<Vec<Vec<String>>> {
+        let mut all = vec![Vec::new()];
+        for text in &self.compare {
+            let values = text.split_once('=').map(|(key, values)| (key, values.split('|').collect::<Vec<_>>()));
+            let Some((key, values)) = values.filter(|(key, values)| !key.trim().is_empty() && values.len() > 1) else {
+                let what = format!("--compare is `{text}`");
+                return Err(Error::input(
+                    what,
+                    "give a key of the scene and two values or more: 'curl.control=rotation|off'",
+                ));
+            };
+            let longer = |chosen: &Vec<String>, value: &str| {
+                let set = format!("{}={}", key.trim(), value.trim());
+                chosen.iter().cloned().chain([set]).collect::<Vec<_>>()
+            };
+            all = all.iter().flat_map(|chosen| values.iter().map(|value| longer(chosen, value))).collect();
+        }
+        Ok(all)
+    }
+
     fn series(&self, scene: &Scene) -> Result<Vec<Series>> {
-        let mut all = Vec::new();
+        let (mut all, compared) = (Vec::new(), self.compared()?);
         for name in &self.methods {
             let Some(method) = Method::named(name) else {
                 let what = format!("there is no method `{name}`");
@@ -119,8 +142,15 @@ impl Request {
                 let own = [degree];
                 let times = if self.time_degrees.is_empty() { &own[..] } else { &self.time_degrees };
                 for &time_degree in times {
-                    let of = |layout: &Option<String>| Series { method, degree, time_degree, layout: layout.clone() };
-                    all.extend(layouts.iter().map(of));
+                    let of = |(layout, sets): (&Option<String>, &Vec<String>)| Series {
+                        method,
+                        degree,
+                        time_degree,
+                        layout: layout.clone(),
+                        sets: sets.clone(),
+                    };
+                    let each = layouts.iter().flat_map(|layout| compared.iter().map(move |sets| (layout, sets)));
+                    all.extend(each.map(of));
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 use super::case::{Case, Series};
 use super::choice::{Aim, Choice, ranked};
+use super::compared::compared;
 use super::front::{answers, front};
 use super::measure::Measure;
 use super::plot::{Axis, plot};
@@ -32,7 +33,7 @@ const BETWEEN: usize = 16;
 /// What is to be studied.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// Methods, degrees, layouts.
+    /// Methods, degrees, layouts, values of compared keys.
     pub series: Vec<Series>,
     /// Cells per direction over those of the scene, rising.
     pub refinements: Vec<f64>,
@@ -270,6 +271,8 @@ impl Session<'_> {
         let answers = answers(records);
         self.say("cheapest by error:");
         answers.iter().for_each(|a| self.say(answer(measure, a.error, &records[a.record])));
+        let comparisons = compared(records);
+        comparisons.iter().for_each(|comparison| self.say(comparison.line()));
         trend::lines(records, scene).iter().for_each(|line| self.say(line));
         let setting = |r: &Record| {
             json!({
@@ -289,6 +292,7 @@ impl Session<'_> {
             "answers": words.collect::<Vec<_>>(),
             "front": front(records).into_iter().map(|k| setting(&records[k])).collect::<Vec<_>>(),
             "quantities": trend::json(records, scene),
+            "compared": comparisons,
             "tries": tries,
         });
         write_text(&self.out.join("study.csv"), &self.csv())?;

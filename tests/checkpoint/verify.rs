@@ -126,6 +126,23 @@ fn a_whole_file_under_the_name_of_another_is_found_with_and_without_the_hashes_o
     assert!(message.contains(&format!("{} is missing", kept(1))), "{message}");
 }
 
+/// The list of the folder is no help here: its line is gone, too.
+#[test]
+fn a_snapshot_that_the_run_has_made_and_that_is_gone_with_its_line_is_named() {
+    let bench = Bench::new();
+    bench.run("run case.toml --out r");
+    let snapshots = snapshot::list(&bench.path("r/snapshots")).unwrap();
+    // One of the first steps, which verify does again.
+    let (step, path) = &snapshots[1];
+    let name = format!("snapshots/{}", path.file_name().unwrap().to_str().unwrap());
+    let list = fs::read_to_string(bench.path("r/.dgmpm")).unwrap();
+    let kept: String = list.split_inclusive('\n').filter(|line| !line.starts_with(&name)).collect();
+    fs::write(bench.path("r/.dgmpm"), kept).unwrap();
+    fs::remove_file(path).unwrap();
+    let message = bench.fail(6, &format!("verify r --steps {}", step + 1));
+    assert!(message.contains(&format!("the snapshot of step {step} is missing")), "{message}");
+}
+
 #[test]
 fn a_run_that_was_extended_after_few_steps_is_repeated_as_it_was() {
     let bench = Bench::new();

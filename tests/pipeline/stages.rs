@@ -260,6 +260,12 @@ fn export_writes_each_format_and_one_file_a_snapshot() {
     // Again, with everything, over what is there.
     bench.run("export runs/case");
     assert_eq!((names("vtu"), names("pvd"), names("xdmf")), (4, 2, 3));
+    // What moves goes into files of other names, beside the first ones.
+    bench.run("export runs/case --format vtu,xdmf,vtkhdf --deformed");
+    assert_eq!((names("vtu"), names("pvd"), names("xdmf"), names("vtkhdf")), (8, 4, 4, 2));
+    let moved = bench.read("runs/case/export/grid_deformed_000000.vtu");
+    assert!(moved.contains("positions: x = X + u"), "where points are stands in the file");
+    assert!(bench.read("runs/case/export/grid_000000.vtu").contains("positions: X, in the initial configuration"));
     let grid = bench.read("runs/case/export/grid.pvd");
     assert!(grid.contains("timestep=\"0.0001\"") || grid.contains("timestep=\"1e-4\""), "{grid}");
     let series = bench.read("runs/case/export/series.xdmf");

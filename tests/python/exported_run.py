@@ -170,6 +170,43 @@ def check_series(export, run, grids):
         return points, quads
 
 
+def check_vtkhdf(export, run, name, vtus):
+    """NAME.vtkhdf by VTK and h5py against the .vtu files, bit by bit; what does not change is stored once."""
+    path = export / f"{name}.vtkhdf"
+    reader = pyvista.get_reader(path)
+    check(f"{path.name}: times", list(reader.time_values) == run.times)
+    for k, vtu in enumerate(vtus):
+        reader.set_active_time_point(k)
+        data = reader.read()
+        data = data.combine() if isinstance(data, pyvista.MultiBlock) else data
+        good = same_bits(data.points, vtu.points) and np.array_equal(data.cell_connectivity, vtu.cell_connectivity)
+        good = good and np.array_equal(data.celltypes, vtu.celltypes)
+        for ours, theirs in ((data.point_data, vtu.point_data), (data.cell_data, vtu.cell_data)):
+            good = good and set(ours) == set(theirs)
+            good = good and all(same_bits(np.asarray(ours[key]), np.asarray(theirs[key])) for key in theirs)
+        check(f"{path.name}: step {k}, VTK = .vtu, bit by bit", good)
+    with h5py.File(path) as h5:
+        moves = len({np.asarray(vtu.points).tobytes() for vtu in vtus})
+        check(f"{path.name}: a grid is stored once while it does not move",
+              len(h5["VTKHDF/NumberOfPoints"]) == moves and len(h5["VTKHDF/Points"]) == moves * vtus[0].n_points)
+
+
+def check_deformed(export, run, vtus):
+    """Files of `export --deformed`: the same fields, and positions X + u to the last bit."""
+    for name, initial in vtus.items():
+        moved = [pyvista.read(path) for _, path in exported.series(export / f"{name}_deformed.pvd")]
+        for k, (before, after) in enumerate(zip(initial, moved, strict=True)):
+            expected = np.asarray(before.points) + np.asarray(before.point_data["displacement"])
+            good = same_bits(after.points, expected) and set(after.point_data) == set(before.point_data)
+            good = good and all(same_bits(np.asarray(after.point_data[f]), np.asarray(before.point_data[f]))
+                                for f in before.point_data)
+            check(f"{name}_deformed: step {k}, positions X + u and the same fields", good)
+        check_vtkhdf(export, run, f"{name}_deformed", moved)
+    for k, (_, data) in enumerate(vtk_series(export / "series_deformed.xdmf")):
+        expected = np.asarray(vtus["grid"][k].points) + np.asarray(vtus["grid"][k].point_data["displacement"])
+        check(f"series_deformed.xdmf: step {k}", same_bits(np.asarray(data.points)[:, :2], expected[:, :2]))
+
+
 def check_mesh(export, run):
     """mesh.xdmf by meshio and VTK."""
     mesh = meshio.read(export / "mesh.xdmf")
@@ -199,7 +236,7 @@ def main():
     grid_cell = np.repeat(np.arange(count), len(lattice))
     grid_xi = np.tile(lattice, (count, 1))
     per_cell = np.diff(run.first).astype(float)
-    grids, series = [], {kind: exported.series(export / f"{kind}.pvd") for kind in ("grid", "points")}
+    grids, clouds, series = [], [], {kind: exported.series(export / f"{kind}.pvd") for kind in ("grid", "points")}
     for kind, files in series.items():
         check(f"{kind}.pvd: times", [time for time, _ in files] == run.times)
         check(f"{kind}.pvd: by VTK", list(pyvista.PVDReader(str(export / f"{kind}.pvd")).time_values) == run.times)
@@ -218,6 +255,10 @@ def main():
                     "virtual": np.zeros(len(cell))}
         points = check_vtu(run, path, len(run.xi), expected, {}, args.limit)
         check(f"{path.name}: positions", error(points.points[:, :2], bilinear(run.corners[cell], run.xi)) < 1e-15)
+        clouds.append(points)
+    for name, vtus in (("grid", grids), ("points", clouds)):
+        check_vtkhdf(export, run, name, vtus)
+    check_deformed(export, run, {"grid": grids, "points": clouds})
     points, quads = check_series(export, run, grids)
     nodes, cells = check_mesh(export, run)
     velocity = np.array(grids[-1].point_data["velocity"])[:, :2]
