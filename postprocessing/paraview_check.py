@@ -14,7 +14,6 @@ from pathlib import Path
 from paraview import servermanager
 from paraview.simple import (
     ColorBy,
-    CreateLayout,
     CreateView,
     Delete,
     GetColorTransferFunction,
@@ -31,7 +30,7 @@ from paraview.simple import (
 
 # Time-dependent VTKHDF came with ParaView 5.12.
 READS_VTKHDF = (5, 12)
-SIZE = [620, 600]
+SIZE = [560, 520]
 
 
 def fail(what):
@@ -135,40 +134,49 @@ def title(run):
 
 def draw(runs, out):
     """A map of sigma11 for each run, beside each other on one symmetric colour scale."""
-    layout = CreateLayout(name="figure 3")
-    views, sources = [], []
-    for k, run in enumerate(runs):
-        view = CreateView("RenderView")
-        layout.AssignView(layout.SplitHorizontal(0, 1 - 1 / (len(runs) - k + 1)) if k else 0, view)
+    view = CreateView("RenderView")
+    view.ViewSize = [SIZE[0] * len(runs), SIZE[1]]
+    view.UseColorPaletteForBackground, view.Background = 0, [1.0, 1.0, 1.0]
+    view.OrientationAxesVisibility, view.InteractionMode = 0, "2D"
+    sources = []
+    for run in runs:
         source = PVDReader(FileName=str(Path(run) / "export" / "grid_deformed.pvd"))
         UpdatePipeline(source.TimestepValues[-1], source)
-        views.append(view)
         sources.append(source)
+    view.ViewTime = sources[0].TimestepValues[-1]
     limit = max(largest_stress(source) for source in sources)
     colours = GetColorTransferFunction("cauchy_stress")
     colours.VectorMode, colours.VectorComponent = "Component", 0
     colours.ApplyPreset("Cool to Warm (Extended)", True)
-    colours.RescaleTransferFunction(-limit, limit)
-    for k, (run, view, source) in enumerate(zip(runs, views, sources)):
-        view.ViewTime = source.TimestepValues[-1]
-        view.ViewSize = SIZE
-        view.UseColorPaletteForBackground, view.Background = 0, [1.0, 1.0, 1.0]
-        view.OrientationAxesVisibility, view.InteractionMode = 0, "2D"
+    bounds = [source.GetDataInformation().GetBounds() for source in sources]
+    width = 1.12 * max(high - low for low, high, *_ in bounds)
+    for k, (run, source) in enumerate(zip(runs, sources)):
         surface = Show(source, view)
         surface.Representation, surface.NonlinearSubdivisionLevel = "Surface", 2
         surface.Ambient, surface.Diffuse = 1.0, 0.0  # a lamp would change the colours
+        surface.Position = [k * width, 0.0, 0.0]
         ColorBy(surface, ("POINTS", "cauchy_stress"))
-        last = k == len(runs) - 1
-        surface.SetScalarBarVisibility(view, last)
-        if last:
-            bar = GetScalarBar(colours, view)
-            bar.Title, bar.ComponentTitle = "sigma11 (Pa)", ""
-            bar.TitleColor = bar.LabelColor = [0.0, 0.0, 0.0]
         label = Show(Text(Text=title(run)), view)
-        label.Color, label.WindowLocation = [0.0, 0.0, 0.0], "Upper Center"
-        view.ResetCamera()
-        Render(view)
-    SaveScreenshot(str(out), layout, ImageResolution=[SIZE[0] * len(runs), SIZE[1]])
+        label.Color, label.FontSize = [0.0, 0.0, 0.0], 20
+        label.WindowLocation, label.Position = "Any Location", [0.07 + 0.29 * k, 0.93]
+    bar = GetScalarBar(colours, view)
+    bar.Title, bar.ComponentTitle = "sigma11 (Pa)", ""
+    bar.TitleColor = bar.LabelColor = [0.0, 0.0, 0.0]
+    bar.WindowLocation, bar.Position, bar.ScalarBarLength = "Any Location", [0.9, 0.2], 0.6
+    surface.SetScalarBarVisibility(view, True)
+    Render(view)
+    view.ResetCamera()
+    middle, height = 0.5 * (len(runs) - 1) * width + 0.5 * width, max(high - low for _, _, low, high, *_ in bounds)
+    view.CameraParallelScale = 0.62 * height
+    # What is shown first has set the range.
+    colours.AutomaticRescaleRangeMode = "Never"
+    colours.RescaleTransferFunction(-limit, limit)
+    # To the left of the colour bar.
+    x = bounds[0][0] + middle + 0.17 * width
+    y = 0.5 * (bounds[0][2] + bounds[0][3])
+    view.CameraPosition, view.CameraFocalPoint = [x, y, 10.0], [x, y, 0.0]
+    Render(view)
+    SaveScreenshot(str(out), view, ImageResolution=view.ViewSize)
 
 
 def main(arguments):
@@ -179,8 +187,7 @@ def main(arguments):
     servermanager.SetProgressPrintingEnabled(False)
     opened = sum(check(run) for run in runs)
     draw(runs, out)
-    version = ".".join(map(str, GetParaViewVersion().GetVersion() if hasattr(GetParaViewVersion(), "GetVersion") else [GetParaViewVersion()]))
-    print(f"paraview {version}: {opened} files opened, arrays and ranges as written; {out}")
+    print(f"paraview {GetParaViewVersion()}: {opened} files opened, arrays and ranges as written; {out}")
 
 
 main(sys.argv[1:])
