@@ -193,7 +193,7 @@ fn info_knows_each_file_of_a_run_and_says_of_others_what_it_can_read() {
     std::fs::write(folder.join("probes.toml"), scene).unwrap();
     std::fs::copy(python::root().join("meshes/riemann.msh"), folder.join("riemann.msh")).unwrap();
     said(&["run", "probes.toml"], folder);
-    said(&["export", "runs/probes"], folder);
+    said(&["export", "runs/probes", "--format", "vtu,xdmf,vtkhdf"], folder);
     let first = |name: &str| {
         let mut all: Vec<PathBuf> = std::fs::read_dir(folder.join("runs/probes").join(name))
             .unwrap()
@@ -219,6 +219,7 @@ fn info_knows_each_file_of_a_run_and_says_of_others_what_it_can_read() {
         (run("summary.json"), "summary of a run"),
         (run("export/grid.pvd"), "PVD: a series of VTU files"),
         (run("export/series.xdmf"), "XDMF: grids with their fields, whose numbers are in an .h5 file"),
+        (run("export/grid.vtkhdf"), "VTKHDF: a series for ParaView, all times in one file"),
         (run("export/series.h5"), "HDF5 file of an export, which an .xdmf file names"),
     ];
     for (file, kind) in wanted {

@@ -26,12 +26,25 @@ pub(super) fn info(path: &Path) -> Result<Info> {
         name if name == checkpoint::FORMAT.name => kept(&Checkpoint::read(path)?),
         "" => {
             let all = reader.names()?;
-            Info::new("HDF5 file of an export, which an .xdmf file names").with("arrays", all)
+            match all.iter().any(|name| name == "VTKHDF") {
+                true => Info::new("VTKHDF: a series for ParaView, all times in one file"),
+                false => Info::new("HDF5 file of an export, which an .xdmf file names").with("arrays", all),
+            }
         }
         other => Info::new(format!("HDF5 file of the format `{other}`")).with("arrays", reader.names()?),
     };
     let info = info.maybe("version", text("version")?);
-    let keys = ["program", "commit", "kernel", "scene_hash", "operators_hash", "mesh_hash", "points_hash", "laws_hash"];
+    let keys = [
+        "positions",
+        "program",
+        "commit",
+        "kernel",
+        "scene_hash",
+        "operators_hash",
+        "mesh_hash",
+        "points_hash",
+        "laws_hash",
+    ];
     let found = keys.into_iter().map(|key| Ok((key, text(key)?))).collect::<Result<Vec<_>>>()?;
     Ok(found.into_iter().fold(info, |info, (key, text)| info.maybe(key, text.filter(|text| !text.is_empty()))))
 }
