@@ -1,0 +1,111 @@
+"""docs/validation.md and its pictures."""
+
+import subprocess
+import tempfile
+from pathlib import Path
+
+from PIL import Image
+from runs import ROOT
+
+HEAD = """# Validation
+
+This page is written by `make validation`. It runs each case of `tools/validation/` with the scenes of `meshes/validation/`, and compares numbers
+with values from elsewhere. `make test` runs a part of the cases and fails where a line leaves its bound.
+
+The kind of a reference says what it is worth:
+
+- *exact*: a formula for this very problem;
+- *computed independently*: another method with converged cells, of which nothing comes from this program;
+- *conservation law*: what the equations keep;
+- *finer cells*: the result of the same program on finer cells, which shows convergence and no more;
+- *reported*: numbers of the literature, as they are remembered there and here; the bound is their spread.
+
+"Allowed" is the largest difference that is in order, as a share of the reference or, where it has a unit or the reference is 0, as it is. Each
+bound has a reason, which stands below the table of its case. Where a line is not within its bound the page says why; the bound stays.
+Seconds are CPU seconds of one thread, of all runs of a line. Scenes have default settings but for what they name.
+"""
+
+
+def number(value, unit=""):
+    text = f"{value:.5g}" if 1e-3 <= abs(value) < 1e5 or value == 0 else f"{value:.4e}"
+    return f"{text} {unit}".strip()
+
+
+def difference(line, value):
+    share = abs(line.difference(value))
+    if line.absolute:
+        return number(share, line.unit)
+    return f"{100 * share:.2g} %" if share > 1e-6 else f"{share:.1e}"
+
+
+def allowed(line):
+    return number(line.allowed, line.unit) if line.absolute else (f"{100 * line.allowed:.3g} %" if line.allowed > 1e-6 else f"{line.allowed:.0e}")
+
+
+def within(line, value):
+    """Whether a line is within its bound; a number that is none is not."""
+    return abs(line.difference(value)) <= line.allowed
+
+
+def rows(outcomes):
+    yield "| case | quantity | reference | kind | ours | difference | allowed | within | seconds |"
+    yield "|---|---|---|---|---|---|---|---|---|"
+    for case, finished in outcomes:
+        for line, value in finished.numbers(case):
+            seconds = sum(finished.seconds[label] for label in line.runs)
+            met = "yes" if within(line, value) else "**no**"
+            cells = [
+                f"[{case.title}](#{anchor(case.title)})",
+                line.quantity,
+                number(line.reference, line.unit),
+                line.kind,
+                number(value, line.unit),
+                difference(line, value),
+                allowed(line),
+                met,
+                f"{seconds:.1f}",
+            ]
+            yield f"| {' | '.join(cells)} |"
+
+
+def anchor(title):
+    kept = "".join(c for c in title.lower() if c.isalnum() or c in " -_")
+    return kept.replace(" ", "-")
+
+
+def write(outcomes):
+    """The page from the finished cases."""
+    numbers = [(case, line, value) for case, finished in outcomes for line, value in finished.numbers(case)]
+    missed = [(case, line, value) for case, line, value in numbers if not within(line, value)]
+    seconds = sum(sum(finished.seconds.values()) for _, finished in outcomes)
+    text = [HEAD, "## All lines\n"]
+    text.append(f"{len(numbers) - len(missed)} of {len(numbers)} lines are within their bounds. All runs together take {seconds:.0f} s of one core.\n")
+    text += rows(outcomes)
+    if missed:
+        text.append("\n## What is not within its bound\n")
+        text += [f"- {case.title}, {line.quantity}: {number(value, line.unit)}. {line.open}" for case, line, value in missed]
+    for case, finished in outcomes:
+        text.append(f"\n## {case.title}\n\n{case.text}\n\nScene: [`meshes/{case.scene}`](../meshes/{case.scene}).\n")
+        text.append(f"![{case.title}](validation/{case.name}.png)\n\n*{case.picture.caption}*\n\nWhy these bounds:\n")
+        reasons = dict.fromkeys(line.reason for line in case.lines)
+        text += [f"- {reason}: {together(case, reason)}." for reason in reasons]
+    (ROOT / "docs/validation.md").write_text("\n".join(text) + "\n")
+
+
+def together(case, reason):
+    return ", ".join(line.quantity for line in case.lines if line.reason == reason)
+
+
+def picture(program, case, finished):
+    """The map of a case, by `dgmpm plot`, made smaller: docs/validation/<name>.png."""
+    wanted = case.picture
+    with tempfile.TemporaryDirectory() as folder:
+        command = [program, "plot", finished.runs[wanted.run].folder, "--field", wanted.field, "--out", folder, "--quiet"]
+        command += ["--time", str(wanted.time)] if wanted.time is not None else []
+        subprocess.run(command, check=True)
+        drawn = Path(folder) / f"{wanted.field}.png"
+        image = Image.open(drawn).convert("RGB")
+        image.thumbnail((720, 720), Image.Resampling.LANCZOS)
+        place = ROOT / "docs/validation" / f"{case.name}.png"
+        place.parent.mkdir(exist_ok=True)
+        image.quantize(128, dither=Image.Dither.NONE).save(place, optimize=True)
