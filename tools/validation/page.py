@@ -103,7 +103,7 @@ def picture(program, case, finished):
         command = [program, "plot", finished.runs[wanted.run].folder, "--field", wanted.field, "--out", folder, "--quiet"]
         command += ["--time", str(wanted.time)] if wanted.time is not None else []
         subprocess.run(command, check=True)
-        drawn = Path(folder) / f"{wanted.field}.png"
+        [drawn] = Path(folder).glob("*.png")  # the step is in its name where a run has several snapshots
         image = Image.open(drawn).convert("RGB")
         image.thumbnail((720, 720), Image.Resampling.LANCZOS)
         place = ROOT / "docs/validation" / f"{case.name}.png"
