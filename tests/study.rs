@@ -69,6 +69,25 @@ fn a_study_writes_its_table_its_plots_and_the_answer_in_words() {
 }
 
 #[test]
+fn a_study_compares_values_of_keys_each_with_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = "--methods rk-dgfem --degrees 1 --refine 0.25,0.5 --compare curl.control=rotation|off --compare scheme.flux=dual|rusanov";
+    study(&scene("manufactured.toml"), folder.path(), options).unwrap();
+    let compared = column(folder.path(), "compared");
+    let settings = [
+        "rotation scheme.flux=dual",
+        "rotation scheme.flux=rusanov",
+        "off scheme.flux=dual",
+        "off scheme.flux=rusanov",
+    ];
+    let settings = settings.map(|setting| format!("curl.control={setting}"));
+    assert_eq!(compared, [&settings[..], &settings[..]].concat());
+    // Rusanov's flux is not the dual one: the setting reaches the run.
+    let error = numbers(folder.path(), "error");
+    assert!(error[0] != error[1] && error[2] != error[3], "{error:?}");
+}
+
+#[test]
 fn a_setting_chosen_for_an_error_has_it_within_a_factor_of_two_of_the_prediction() {
     let folder = tempfile::tempdir().unwrap();
     study(&scene("manufactured.toml"), folder.path(), "--degrees 2,3 --refine 0.125,0.25,0.5 --error 1e-3").unwrap();
@@ -226,6 +245,9 @@ fn bad_options_are_refused_and_results_kept() {
         ("--methods rk-dgfm", "rk-dgfem"),
         ("--layouts midpoint --methods ader-dgmpm", "midpoints"),
         ("--refine 0", "above 0"),
+        ("--compare curl.control", "KEY=VALUE|VALUE"),
+        ("--compare scheme.degree=1|2", "--degrees"),
+        ("--compare curl.control=lfc|off", "lcf"),
         ("--reference 9,1", "DEGREE,REFINEMENT"),
         ("--error -1", "above 0"),
         ("--error 1e-15", "rounding"),

@@ -64,7 +64,13 @@ mod tests {
     use crate::study::case::Case;
 
     fn record(degree: usize, refinement: f64, cpu: f64, error: f64) -> Record {
-        let series = Series { method: crate::registry::Method::RkDgfem, degree, time_degree: degree, layout: None };
+        let series = Series {
+            method: crate::registry::Method::RkDgfem,
+            degree,
+            time_degree: degree,
+            layout: None,
+            sets: Vec::new(),
+        };
         Record { cpu, error: Some(error), ..Record::failed(Case { series, refinement }, "done".into()) }
     }
 

@@ -12,11 +12,12 @@ use std::fmt::Write;
 /// Columns of `study.csv`. Errors are of F, v (m/s), P (Pa) at the end of the run; times in s, memory in MiB; `predicted_*`
 /// is what the coarser meshes of the series had let expect, by the measure of the study. Behind them stand `quantity_NAME` and
 /// `quantity_NAME_error` for each quantity of the scene.
-pub const COLUMNS: [&str; 27] = [
+pub const COLUMNS: [&str; 28] = [
     "method",
     "degree",
     "time_degree",
     "layout",
+    "compared",
     "refinement",
     "cells",
     "dofs",
@@ -61,9 +62,10 @@ pub fn csv(records: &[Record], quantities: &[Quantity], head: &[String]) -> Stri
     let of_quantities = quantities.iter().map(|q| format!(",quantity_{0},quantity_{0}_error", q.name));
     text += &format!("{}{},status\n", COLUMNS.join(","), of_quantities.collect::<String>());
     for r in records {
-        let Series { method, degree, time_degree, layout } = &r.case.series;
+        let Series { method, degree, time_degree, layout, sets } = &r.case.series;
         let mut row = vec![method.name().to_owned(), degree.to_string(), time_degree.to_string()];
         row.push(layout.clone().unwrap_or_default());
+        row.push(text_cell(&sets.join(" ")));
         row.push(r.case.refinement.to_string());
         row.extend([r.cells, r.dofs, r.steps].map(|n| n.to_string()));
         let dt = if r.steps > 0 { r.dt.map(|dt| format!("{dt:e}")) } else { Default::default() };
@@ -86,10 +88,20 @@ pub fn csv(records: &[Record], quantities: &[Quantity], head: &[String]) -> Stri
             row.push(number(r.quantity_errors.get(k).copied().flatten()));
         }
         // The reason of a failure is free text.
-        row.push(format!("\"{}\"", r.status.replace('"', "'").replace('\n', " ")));
+        row.push(quoted(&r.status));
         text += &(row.join(",") + "\n");
     }
     text
+}
+
+/// Free text as a cell.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "'").replace('\n', " "))
+}
+
+/// Text that needs quotes only where a comma or a quote stands in it.
+fn text_cell(text: &str) -> String {
+    if text.contains([',', '"', '\n']) { quoted(text) } else { text.to_owned() }
 }
 
 /// A number of a row; nothing where there is none.

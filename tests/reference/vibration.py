@@ -6,7 +6,7 @@ plate: the beryllium plate, neo-Hookean, at its full amplitude: the period of th
 flag:  the beam of Turek and Hron's test CSM3, St. Venant-Kirchhoff: lowest place of the tip and the time there and back
 
 It prints:
-plate, 24 x 4 elements, 400 / 800 steps: 3.00021e-5 / 2.99958e-5 s, which tends to 2.9994e-5 s; 48 x 8, 800 steps: 2.99967e-5 s
+plate, 24 x 4 elements, 400 / 800 / 1600 steps: 3.00021e-5 / 2.99958e-5 / 2.99943e-5 s, which tends to 2.9994e-5 s; 48 x 8, 800 steps: 2.99967e-5 s
 plate at a thousandth of the amplitude (--share 1e-3), 24 x 4, 800 steps: 2.8919e-5 s (the linear problem has 2.8917e-5 s)
 flag, 35 x 2 elements, 400 / 1000 steps: u2 -.129320 / -.129346 m, back at .9084 / .9097 s; 70 x 4, 500 steps: -.129551 m, .91146 s
 

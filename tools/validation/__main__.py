@@ -12,14 +12,14 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+import page
 from cases import CASES
+from page import allowed, difference, number, within
 from runs import Finished, program
 
 
 def shown(case, finished):
     """Prints the lines of a case; those outside of their bounds that are not known to be."""
-    from page import allowed, difference, number, within
-
     bad = []
     for line, value in finished.numbers(case):
         met = within(line, value)
@@ -49,8 +49,6 @@ def main():
             bad += shown(case, finished)
             outcomes.append((case, finished))
         if args.page:
-            import page
-
             for case, finished in outcomes:
                 page.picture(binary, case, finished)
             if not args.case:

@@ -48,6 +48,8 @@ class Picture:
     run: str = ""
     #: s; the snapshot nearest to it.
     time: float | None = None
+    #: The largest value of the colours, which go as far below 0; 0: those of the field.
+    limit: float = 0.0
 
 
 @dataclass(frozen=True)

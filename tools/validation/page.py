@@ -18,28 +18,27 @@ The kind of a reference says what it is worth:
 - *computed independently*: another method with converged cells, of which nothing comes from this program;
 - *conservation law*: what the equations keep;
 - *finer cells*: the result of the same program on finer cells, which shows convergence and no more;
-- *reported*: numbers of the literature, as they are remembered there and here; the bound is their spread.
+- *reported*: numbers of the literature, quoted from memory and not checked against the papers; the bound is their spread.
 
-"Allowed" is the largest difference that is in order, as a share of the reference or, where it has a unit or the reference is 0, as it is. Each
-bound has a reason, which stands below the table of its case. Where a line is not within its bound the page says why; the bound stays.
-Seconds are CPU seconds of one thread, of all runs of a line. Scenes have default settings but for what they name.
+"Allowed" is the largest difference that is in order: a share of the reference where it is in percent, otherwise a difference in the unit of the
+line. The section of the case says why it is that much. Where a line is not within its bound the page says why; the bound stays. Seconds are CPU seconds of one
+thread, of all runs that a line needs. Scenes have default settings but for what they name.
 """
 
 
-def number(value, unit=""):
-    text = f"{value:.5g}" if 1e-3 <= abs(value) < 1e5 or value == 0 else f"{value:.4e}"
-    return f"{text} {unit}".strip()
+def number(value, unit="", digits=6):
+    return f"{value:.{digits}g} {unit}".strip()
 
 
 def difference(line, value):
     share = abs(line.difference(value))
     if line.absolute:
-        return number(share, line.unit)
-    return f"{100 * share:.2g} %" if share > 1e-6 else f"{share:.1e}"
+        return number(share, line.unit, 2)
+    return f"{100 * share:.2g} %"
 
 
 def allowed(line):
-    return number(line.allowed, line.unit) if line.absolute else (f"{100 * line.allowed:.3g} %" if line.allowed > 1e-6 else f"{line.allowed:.0e}")
+    return number(line.allowed, line.unit, 3) if line.absolute else f"{100 * line.allowed:.3g} %"
 
 
 def within(line, value):
@@ -83,17 +82,19 @@ def write(outcomes):
     text += rows(outcomes)
     if missed:
         text.append("\n## What is not within its bound\n")
-        text += [f"- {case.title}, {line.quantity}: {number(value, line.unit)}. {line.open}" for case, line, value in missed]
+        for case, why in dict.fromkeys((case.title, line.open) for case, line, _ in missed):
+            found = "; ".join(f"{line.quantity}: {number(value, line.unit, 3)}" for of, line, value in missed if (of.title, line.open) == (case, why))
+            text.append(f"- {case}: {found}. {why}")
     for case, finished in outcomes:
         text.append(f"\n## {case.title}\n\n{case.text}\n\nScene: [`meshes/{case.scene}`](../meshes/{case.scene}).\n")
-        text.append(f"![{case.title}](validation/{case.name}.png)\n\n*{case.picture.caption}*\n\nWhy these bounds:\n")
-        reasons = dict.fromkeys(line.reason for line in case.lines)
-        text += [f"- {reason}: {together(case, reason)}." for reason in reasons]
+        text.append(f"![{case.title}](validation/{case.name}.png)\n\n*{case.picture.caption}*\n\nWhat is allowed, and why:\n")
+        reasons = dict.fromkeys((allowed(line), line.reason) for line in case.lines)
+        text += [f"- {bound} ({together(case, bound, reason)}): {reason}." for bound, reason in reasons]
     (ROOT / "docs/validation.md").write_text("\n".join(text) + "\n")
 
 
-def together(case, reason):
-    return ", ".join(line.quantity for line in case.lines if line.reason == reason)
+def together(case, bound, reason):
+    return "; ".join(line.quantity for line in case.lines if (allowed(line), line.reason) == (bound, reason))
 
 
 def picture(program, case, finished):
@@ -102,10 +103,12 @@ def picture(program, case, finished):
     with tempfile.TemporaryDirectory() as folder:
         command = [program, "plot", finished.runs[wanted.run].folder, "--field", wanted.field, "--out", folder, "--quiet"]
         command += ["--time", str(wanted.time)] if wanted.time is not None else []
+        command += [f"--range={-wanted.limit},{wanted.limit}"] if wanted.limit else []
         subprocess.run(command, check=True)
         [drawn] = Path(folder).glob("*.png")  # the step is in its name where a run has several snapshots
         image = Image.open(drawn).convert("RGB")
         image.thumbnail((720, 720), Image.Resampling.LANCZOS)
         place = ROOT / "docs/validation" / f"{case.name}.png"
         place.parent.mkdir(exist_ok=True)
-        image.quantize(128, dither=Image.Dither.NONE).save(place, optimize=True)
+        # The octree keeps the colours of the whole bar, where other palettes take those of the largest areas.
+        image.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(place, optimize=True)

@@ -20,6 +20,9 @@ pub struct Compared {
     /// Layouts of the points of ADER-DGMPM, such as paper, midpoints, random, rotated [default: that of the scene]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     layouts: Vec<String>,
+    /// Values of a key of the scene, each as a setting of its own: "curl.control=lcf|off"; several options: each with each
+    #[arg(long, value_name = "KEY=A|B")]
+    compare: Vec<String>,
     /// Degree and refinement of the run that errors are taken against where no exact solution is known [default: one
     /// degree more than the largest, on the finest mesh]
     #[arg(long, value_name = "N,R", value_delimiter = ',', num_args = 1)]
@@ -45,6 +48,7 @@ impl Compared {
             time_degrees: self.time_degrees.clone(),
             refinements: self.refine.clone(),
             layouts: self.layouts.clone(),
+            compare: self.compare.clone(),
             reference: self.reference.clone(),
             measure: self.measure.clone(),
             error: self.error,
