@@ -37,11 +37,15 @@ def main():
     parser.add_argument("--page", action="store_true")
     parser.add_argument("--case", action="append", choices=[case.name for case in CASES])
     args = parser.parse_args()
+    if args.quick and args.page:
+        parser.error("the page has all runs: leave out --quick")
     chosen = [case for case in CASES if not args.case or case.name in args.case]
     binary, bad, outcomes = program(), [], []
     with tempfile.TemporaryDirectory() as folder:
         for case in chosen:
             labels = [label for label in case.runs if not args.quick or label in case.quick]
+            if not labels:
+                continue
             finished = Finished()
             for label in labels:
                 finished.add(binary, case, label, Path(folder))

@@ -36,8 +36,10 @@ class Finished:
 
 
 def program():
-    """The program, by tools/program.sh."""
-    answer = subprocess.run([ROOT / "tools/program.sh"], check=True, capture_output=True, text=True)
+    """The program, by tools/program.sh, which says what is wrong where there is none."""
+    answer = subprocess.run([ROOT / "tools/program.sh"], stdout=subprocess.PIPE, text=True)
+    if answer.returncode:
+        raise SystemExit(answer.returncode)
     return answer.stdout.strip()
 
 

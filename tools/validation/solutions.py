@@ -1,5 +1,7 @@
 """Exact solutions of the cases, stated apart from the program. SI units."""
 
+from functools import lru_cache
+
 import numpy as np
 
 #: The Rayleigh wave of rayleigh.toml: speed, m/s.
@@ -31,8 +33,9 @@ def opening_intensity(r, opening, reach):
     return np.polyfit(r[inside], apparent[inside], 1)[1]
 
 
-def lamb(x, times):
-    """u1, u2, m, at the surface of lamb.toml, at a distance x from the middle of the force.
+@lru_cache
+def lamb_waves(x):
+    """Times, and u1, u2, m, at the surface of lamb.toml, at a distance x from the middle of the force.
 
     For a traction q(k, s) along y on the surface of the half-plane y < 0, transformed along x (k) and in time (Laplace's s):
     u2 = q a ks^2/(mu R), u1 = -i k q (2 k^2 + ks^2 - 2 a b)/(mu R), with a^2 = k^2 + s^2/c_P^2, b^2 = k^2 + ks^2, ks = s/c_S,
@@ -55,5 +58,10 @@ def lamb(x, times):
         rayleigh = mu * ((2 * k**2 + shear) ** 2 - 4 * k**2 * p_root * s_root)
         answer[0, n] = -(share * k * (2 * k**2 + shear - 2 * p_root * s_root) / rayleigh) @ np.sin(k * x)
         answer[1, n] = (share * p_root * shear / rayleigh) @ np.cos(k * x)
-    waves = np.fft.irfft(answer * spectrum, 4096) * np.exp(damping * t)
-    return [np.interp(times, t, wave) for wave in waves]
+    return t, np.fft.irfft(answer * spectrum, 4096) * np.exp(damping * t)
+
+
+def lamb(x, component, times):
+    """u1 or u2, m, of `lamb_waves` at times."""
+    t, waves = lamb_waves(x)
+    return np.interp(times, t, waves[component - 1])

@@ -141,7 +141,7 @@ DISC = Case(
 def wave_error(run, name, x, component):
     """Largest error of a displacement at the surface through time, over its largest value."""
     t, ours = track(run, name, f"displacement_{component}")
-    exact = lamb(x, t)[component - 1]
+    exact = lamb(x, component, t)
     return np.abs(ours - exact).max() / np.abs(exact).max()
 
 
