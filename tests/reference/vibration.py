@@ -1,14 +1,17 @@
 """Two vibrations of docs/validation.md by displacement finite elements in scikit-fem: a reference of another kind.
 
-Biquadratic elements, implicit midpoint rule with Newton's method, plane strain: no flux, no material point, no limit of the step.
+Biquadratic elements, implicit midpoint rule with Newton's method, plane strain: no flux, no material point, no limit
+of the step.
 
 plate: the beryllium plate, neo-Hookean, at its full amplitude: the period of the middle
 flag:  the beam of Turek and Hron's test CSM3, St. Venant-Kirchhoff: lowest place of the tip and the time there and back
 
 It prints:
-plate, 24 x 4 elements, 400 / 800 / 1600 steps: 3.00021e-5 / 2.99958e-5 / 2.99943e-5 s, which tends to 2.9994e-5 s; 48 x 8, 800 steps: 2.99967e-5 s
-plate at a thousandth of the amplitude (--share 1e-3), 24 x 4, 800 steps: 2.8919e-5 s (the linear problem has 2.8917e-5 s)
-flag, 35 x 2 elements, 400 / 1000 steps: u2 -.129320 / -.129346 m, back at .9084 / .9097 s; 70 x 4, 500 steps: -.129551 m, .91146 s
+plate, 24 x 4 elements, 400 / 800 / 1600 steps: 3.00021e-5 / 2.99958e-5 / 2.99943e-5 s, which
+    tends to 2.9994e-5 s; 48 x 8, 800 steps: 2.99967e-5 s
+plate, --share 1e-3, 24 x 4, 800 steps: 2.8919e-5 s (the linear problem has 2.8917e-5 s)
+flag, 35 x 2 elements, 400 / 1000 steps: u2 -.129320 / -.129346 m, back at .9084 / .9097 s;
+    70 x 4, 500 / 1000 steps: -.129551 / -.129573 m, .9115 / .9106 s
 
 usage: vibration.py plate|flag [--cells 24 4] [--steps 1200] [--share 1.0 (of the amplitude of the plate)]
 """
@@ -48,12 +51,12 @@ def neo_hookean(young, poisson):
 
 
 def tangent(stress, f):
-    """dP/dF at F, [i, j, k, l, ...], by complex steps: without a difference, hence to rounding."""
+    """dP/dF at F, [i, j, k, m, ...], by complex steps: without a difference, hence to rounding."""
     out = np.empty((2, 2, 2, 2, *f.shape[2:]))
-    for k, l in np.ndindex(2, 2):
+    for k, m in np.ndindex(2, 2):
         step = np.zeros((2, 2, 1, 1), complex)
-        step[k, l] = 1e-20j
-        out[:, :, k, l] = stress(f + step).imag / 1e-20
+        step[k, m] = 1e-20j
+        out[:, :, k, m] = stress(f + step).imag / 1e-20
     return out
 
 
@@ -77,7 +80,7 @@ class Body:
         return vector, form.assemble(self.basis).tocsc()
 
     def run(self, v, dt, steps, dofs):
-        """t and u of some degrees of freedom, [1 + dof, step], by the implicit midpoint rule from u = 0 and velocity v."""
+        """t and u of some degrees of freedom, [1 + dof, step], by the implicit midpoint rule from u = 0."""
         u, free, rows = self.basis.zeros(), self.free, [np.zeros(1 + len(dofs))]
         for step in range(steps):
             middle = u + dt / 2 * v
@@ -133,7 +136,10 @@ def flag(cells, steps):
     for axis, u in enumerate(tip):
         back = (t > 0.7) & (t < 0.99)
         low, high = turn(t, u, np.argmin(u)), turn(t, u, np.flatnonzero(back)[np.argmax(u[back])])
-        print(f"flag {cells} {steps} steps: u{axis + 1} lowest {low[1]:.6f} m at {low[0]:.5f} s, back {high[1]:.6f} m at {high[0]:.5f} s", flush=True)
+        print(
+            f"flag {cells} {steps} steps: u{axis + 1} lowest {low[1]:.6f} m at {low[0]:.5f} s, back {high[1]:.6f} m at {high[0]:.5f} s",
+            flush=True,
+        )
 
 
 def turn(t, u, k):

@@ -24,7 +24,9 @@ def shown(case, finished):
     for line, value in finished.numbers(case):
         met = within(line, value)
         word = "within" if met else "OUTSIDE (known)" if line.open else "OUTSIDE"
-        text = f"{case.name}: {line.quantity}: {number(value, line.unit)}, reference {number(line.reference, line.unit)}"
+        text = (
+            f"{case.name}: {line.quantity}: {number(value, line.unit)}, reference {number(line.reference, line.unit)}"
+        )
         print(f"{text}: {difference(line, value)} of {allowed(line)} allowed: {word}", flush=True)
         if not met and not line.open:
             bad.append(text)

@@ -5,7 +5,12 @@ from case import COMPUTED, EXACT, LAW, OWN, REPORTED, Case, Line, Picture
 from measures import contact, frequency, ledger, mean_radius, rise, touching, track
 
 #: Verney's shell: share of the inner radius where it stops, its velocity at the start, m/s, when it stops, s.
-SHELLS = [(0.5, 490.2991, 1.3933e-4), (0.6, 432.36206, 1.3162e-4), (0.75, 334.08176, 1.1203e-4), (0.9, 206.40524, 7.565e-5)]
+SHELLS = [
+    (0.5, 490.2991, 1.3933e-4),
+    (0.6, 432.36206, 1.3162e-4),
+    (0.75, 334.08176, 1.1203e-4),
+    (0.9, 206.40524, 7.565e-5),
+]
 
 
 def shell_sets(velocity, end):
@@ -21,10 +26,11 @@ SHELL = Case(
     "shell",
     "Collapse of a cylindrical shell (Verney)",
     "validation/shell.toml",
-    "A ring of beryllium (80 to 100 mm) flies inwards, and plastic work stops it. For a rigid, perfectly plastic, incompressible ring the velocity "
-    "that stops it at a given radius is exact, and so is the time of the stop (Howell and Ball, LA-14379, 2002). The radius is "
-    "the mean one of the inner side at that time. It shows large plastic strains (80 % at the inner side) in cells that flow from "
-    "thick to thin, and that next to nothing of the energy is lost to the numbers: the flux takes .01 % of it.",
+    "A ring of beryllium (80 to 100 mm) flies inwards, and plastic work stops it. For a rigid, perfectly plastic, "
+    "incompressible ring the velocity that stops it at a given radius is exact, and so is the time of the stop "
+    "(Howell and Ball, LA-14379, 2002). The radius is the mean one of the inner side at that time. It shows large "
+    "plastic strains (80 % at the inner side) in cells that flow from thick to thin, and that next to nothing of the"
+    " energy is lost to the numbers: the flux takes .01 % of it.",
     [
         Line(
             f"inner radius at the stop, share {share}",
@@ -59,8 +65,8 @@ TAYLOR = Case(
     "taylor",
     "Planar Taylor bar, aluminium",
     "validation/taylor.toml",
-    "A bar of 5 m x 1 m hits a rigid wall at 150 m/s; perfect plasticity. There is no exact solution: other programs have final lengths from 4.56 to "
-    "4.62 m (quoted from memory), which is all that the comparison can say.",
+    "A bar of 5 m x 1 m hits a rigid wall at 150 m/s; perfect plasticity. There is no exact solution: other programs"
+    " have final lengths from 4.56 to 4.62 m (quoted from memory), which is all that the comparison can say.",
     [
         Line(
             "final length",
@@ -89,12 +95,25 @@ ROD = Case(
     "rod",
     "Rod on a wall with a gap",
     "gap_rod.toml",
-    "A rod flies over a gap of .01 in against a rigid wall, touches it, and leaves it when the wave comes back from its other end. Time of contact "
-    "gap/v, of release 2 l/c later, and force rho c v are exact in one dimension; the rod has no Poisson's ratio.",
+    "A rod flies over a gap of .01 in against a rigid wall, touches it, and leaves it when the wave comes back from "
+    "its other end. Time of contact gap/v, of release 2 l/c later, and force rho c v are exact in one dimension; the"
+    " rod has no Poisson's ratio.",
     [
-        Line(quantity, unit, value, EXACT, 1e-2, "the front of the force is one cell wide", lambda runs, k=k: rod(runs[""])[k])
+        Line(
+            quantity,
+            unit,
+            value,
+            EXACT,
+            1e-2,
+            "the front of the force is one cell wide",
+            lambda runs, k=k: rod(runs[""])[k],
+        )
         for k, (quantity, unit, value) in enumerate(
-            [("first contact", "s", 4.946e-5), ("release", "s", 1.4812e-4), ("force", "N/m", 29922 * 4.4482216 / 0.0254)]
+            [
+                ("first contact", "s", 4.946e-5),
+                ("release", "s", 1.4812e-4),
+                ("force", "N/m", 29922 * 4.4482216 / 0.0254),
+            ]
         )
     ],
     Picture("Stress along x after 95 us: the wave on its way back.", "cauchy_stress_11"),
@@ -153,9 +172,10 @@ RING = Case(
     "ring",
     "Vibrating ring",
     "validation/ring.toml",
-    "A ring vibrates on its own, linear and small, from round to oval and back, for two periods. The period is that of the lowest mode of the round "
-    "ring by finite elements in scikit-fem (Q2, curved, 2 x 64 to 8 x 256 elements, of which the last two differ by 6e-5). An elastic ring without "
-    "load keeps its energy; this one does not. It shows what straight cells cost in a thin curved body, see the list of what is not within its bound.",
+    "A ring vibrates on its own, linear and small, from round to oval and back, for two periods. The period is that "
+    "of the lowest mode of the round ring by finite elements in scikit-fem (Q2, curved, 2 x 64 to 8 x 256 elements, "
+    "of which the last two differ by 6e-5). An elastic ring without load keeps its energy; this one does not. It "
+    "shows what straight cells cost in a thin curved body, see the list of what is not within its bound.",
     [
         Line(
             f"period, {label}",
@@ -171,10 +191,11 @@ RING = Case(
     ]
     + energy_lines(
         ("S2, 2 x 32", "S3, 2 x 32", "S2, 4 x 64"),
-        "Cells have straight edges, so the ring is a polygon, and at each of its corners the bending stress along the free sides turns by 11 degrees (64 cells "
-        "around: 6). The polynomials of the two cells there cannot follow, their jump stays, and flux and free sides take energy from it in each step. A "
-        "straight strip of the same thickness, cells and length of wave loses 2 % at degree 2 and .1 % at degree 3 in 10 ms. The remedy is cells with curved edges, which "
-        "the program does not have.",
+        "Cells have straight edges, so the ring is a polygon, and at each of its corners the bending stress along "
+        "the free sides turns by 11 degrees (64 cells around: 6). The polynomials of the two cells there cannot "
+        "follow, their jump stays, and flux and free sides take energy from it in each step. A straight strip of the"
+        " same thickness, cells and length of wave loses 2 % at degree 2 and .1 % at degree 3 in 10 ms. The remedy "
+        "is cells with curved edges, which the program does not have.",
     ),
     Picture("Stress along x where the ring is most oval (2 x 32 cells).", "cauchy_stress_11", "S2, 2 x 32"),
     {"S2, 2 x 32": [], "S3, 2 x 32": ["scheme.degree=3"], "S2, 4 x 64": ["mesh.file=ring_fine.msh"]},
@@ -184,8 +205,9 @@ RINGS = Case(
     "rings",
     "Colliding rings",
     "validation/rings.toml",
-    "Two rubber rings fly against each other off centre, at 30 m/s each, and part. No force acts from outside, so momentum and angular momentum stay; "
-    "energy never grows, and in elastic bodies without friction all of it should stay. It does not: see the vibrating ring.",
+    "Two rubber rings fly against each other off centre, at 30 m/s each, and part. No force acts from outside, so "
+    "momentum and angular momentum stay; energy never grows, and in elastic bodies without friction all of it should"
+    " stay. It does not: see the vibrating ring.",
     [
         kept("momentum along x", "momentum_1", RING_MOMENTUM),
         kept("momentum along y", "momentum_2", RING_MOMENTUM),
@@ -204,7 +226,8 @@ RINGS = Case(
     ]
     + energy_lines(
         ("2 x 32", "4 x 64"),
-        "The rings lose it in their vibration, as the ring without contact above; what contact takes itself is 3 % and 1 %.",
+        "The rings lose it in their vibration, as the ring without contact above; what contact takes itself is 3 % "
+        "and 1 %.",
     ),
     Picture("Speed after 2 ms (4 x 64 cells a ring).", "speed", "4 x 64", 2e-3),
     {"2 x 32": [], "4 x 64": ["mesh.file=rings_fine.msh"]},
@@ -219,9 +242,10 @@ DISC_IMPACT = Case(
     "hertz",
     "Impact of a disc on a wall",
     "validation/hertz.toml",
-    "A steel disc of radius 1 m hits a rigid wall at 50 m/s and flies back. Waves cross it twice while it touches, so no formula of Hertz holds in "
-    "the plane; what can be asked is that the time of contact converges with the cells, that the impulse of the wall is the change of "
-    "momentum, and that an elastic disc loses no energy. The reference is the time on 16 x 16 cells a block (gmsh -2 half_disc.geo -setnumber n 16).",
+    "A steel disc of radius 1 m hits a rigid wall at 50 m/s and flies back. Waves cross it twice while it touches, "
+    "so no formula of Hertz holds in the plane; what can be asked is that the time of contact converges with the "
+    "cells, that the impulse of the wall is the change of momentum, and that an elastic disc loses no energy. The "
+    "reference is the time on 16 x 16 cells a block (gmsh -2 half_disc.geo -setnumber n 16).",
     [
         Line(
             f"time of contact, {label} cells a block",
@@ -243,8 +267,10 @@ DISC_IMPACT = Case(
             LAW,
             1e-10,
             "rounding",
-            lambda runs: track(runs["8 x 8"], "wall", "rim_impulse_1")[1][-1]
-            / (ledger(runs["8 x 8"], "momentum_1")[-1] - ledger(runs["8 x 8"], "momentum_1")[0]),
+            lambda runs: (
+                track(runs["8 x 8"], "wall", "rim_impulse_1")[1][-1]
+                / (ledger(runs["8 x 8"], "momentum_1")[-1] - ledger(runs["8 x 8"], "momentum_1")[0])
+            ),
             ("8 x 8",),
         ),
         Line(
@@ -253,7 +279,8 @@ DISC_IMPACT = Case(
             1.0,
             EXACT,
             0.02,
-            "contact on faces that close and open takes energy, less on finer cells: 15, 6, 1.2, .3 % on 2 x 2 to 16 x 16 cells a block",
+            "contact on faces that close and open takes energy, less on finer cells: 15, 6, 1.2, .3 % on 2 x 2 to 16"
+            " x 16 cells a block",
             lambda runs: energy_left(runs["8 x 8"]),
             ("8 x 8",),
         ),

@@ -53,7 +53,7 @@ def lowest(run, name, column):
 
 
 def return_frequency(run, name, column, between):
-    """1/s: over the time of the largest value within a span of time, for a body that starts at rest from its highest place."""
+    """1 over the time of the largest value within a span of time, of a body that starts at rest at its highest place."""
     t, u = track(run, name, column)
     rows = np.flatnonzero((t > between[0]) & (t < between[1]))
     return 1 / turn(t, u, rows[np.argmax(u[rows])])[0]

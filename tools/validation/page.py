@@ -7,23 +7,8 @@ from pathlib import Path
 from PIL import Image
 from runs import ROOT
 
-HEAD = """# Validation
-
-This page is written by `make validation`. It runs each case of `tools/validation/` with the scenes of `meshes/validation/`, and compares numbers
-with values from elsewhere. `make test` runs a part of the cases and fails where a line leaves its bound.
-
-The kind of a reference says what it is worth:
-
-- *exact*: a formula for this very problem;
-- *computed independently*: another method with converged cells, of which nothing comes from this program;
-- *conservation law*: what the equations keep;
-- *finer cells*: the result of the same program on finer cells, which shows convergence and no more;
-- *reported*: numbers of the literature, quoted from memory and not checked against the papers; the bound is their spread.
-
-"Allowed" is the largest difference that is in order: a share of the reference where it is in percent, otherwise a difference in the unit of the
-line. The section of the case says why it is that much. Where a line is not within its bound the page says why; the bound stays. Seconds are CPU seconds of one
-thread, of all runs that a line needs. Scenes have default settings but for what they name.
-"""
+#: What stands above the table.
+HEAD = (Path(__file__).parent / "head.md").read_text()
 
 
 def number(value, unit="", digits=6):
@@ -75,33 +60,50 @@ def anchor(title):
 def write(outcomes):
     """The page from the finished cases."""
     numbers = [(case, line, value) for case, finished in outcomes for line, value in finished.numbers(case)]
-    missed = [(case, line, value) for case, line, value in numbers if not within(line, value)]
+    missed = [entry for entry in numbers if not within(*entry[1:])]
     seconds = sum(sum(finished.seconds.values()) for _, finished in outcomes)
     text = [HEAD, "## All lines\n"]
-    text.append(f"{len(numbers) - len(missed)} of {len(numbers)} lines are within their bounds. All runs together take {seconds:.0f} s of one core.\n")
-    text += rows(outcomes)
-    if missed:
-        text.append("\n## What is not within its bound\n")
-        for case, why in dict.fromkeys((case.title, line.open) for case, line, _ in missed):
-            found = "; ".join(f"{line.quantity}: {number(value, line.unit, 3)}" for of, line, value in missed if (of.title, line.open) == (case, why))
-            text.append(f"- {case}: {found}. {why}")
-    for case, finished in outcomes:
-        text.append(f"\n## {case.title}\n\n{case.text}\n\nScene: [`meshes/{case.scene}`](../meshes/{case.scene}).\n")
-        text.append(f"![{case.title}](validation/{case.name}.png)\n\n*{case.picture.caption}*\n\nWhat is allowed, and why:\n")
-        reasons = dict.fromkeys((allowed(line), line.reason) for line in case.lines)
-        text += [f"- {bound} ({together(case, bound, reason)}): {reason}." for bound, reason in reasons]
+    text.append(f"{len(numbers) - len(missed)} of {len(numbers)} lines are within their bounds.")
+    text.append(f"All runs together take {seconds:.0f} s of one core.\n")
+    text += [*rows(outcomes), *reasons_of(missed)]
+    for case, _ in outcomes:
+        text += section(case)
     (ROOT / "docs/validation.md").write_text("\n".join(text) + "\n")
 
 
-def together(case, bound, reason):
-    return "; ".join(line.quantity for line in case.lines if (allowed(line), line.reason) == (bound, reason))
+def reasons_of(missed):
+    """What is not within its bound, a line for each reason."""
+    if missed:
+        yield "\n## What is not within its bound\n"
+    for key in dict.fromkeys((case.title, line.open) for case, line, _ in missed):
+        own = [(line, value) for case, line, value in missed if (case.title, line.open) == key]
+        found = "; ".join(f"{line.quantity}: {number(value, line.unit, 3)}" for line, value in own)
+        yield f"- {key[0]}: {found}. {key[1]}"
+
+
+def section(case):
+    """What a case shows, its picture, and the reasons for its bounds."""
+    yield f"\n## {case.title}\n\n{case.text}\n\nScene: [`meshes/{case.scene}`](../meshes/{case.scene}).\n"
+    yield f"![{case.title}](validation/{case.name}.png)\n\n*{case.picture.caption}*\n\nWhat is allowed, and why:\n"
+    for bound, reason in dict.fromkeys((allowed(line), line.reason) for line in case.lines):
+        own = [line.quantity for line in case.lines if (allowed(line), line.reason) == (bound, reason)]
+        yield f"- {bound} ({'; '.join(own)}): {reason}."
 
 
 def picture(program, case, finished):
     """The map of a case, by `dgmpm plot`, made smaller: docs/validation/<name>.png."""
     wanted = case.picture
     with tempfile.TemporaryDirectory() as folder:
-        command = [program, "plot", finished.runs[wanted.run].folder, "--field", wanted.field, "--out", folder, "--quiet"]
+        command = [
+            program,
+            "plot",
+            finished.runs[wanted.run].folder,
+            "--field",
+            wanted.field,
+            "--out",
+            folder,
+            "--quiet",
+        ]
         command += ["--time", str(wanted.time)] if wanted.time is not None else []
         command += [f"--range={-wanted.limit},{wanted.limit}"] if wanted.limit else []
         subprocess.run(command, check=True)

@@ -27,7 +27,9 @@ class Finished:
         if done.returncode:
             raise SystemExit(f"{case.name} {label}: exit code {done.returncode}\n{done.stderr}")
         self.runs[label] = Run(out)
-        self.seconds[label] = after.children_user + after.children_system - before.children_user - before.children_system
+        self.seconds[label] = (
+            after.children_user + after.children_system - before.children_user - before.children_system
+        )
 
     def numbers(self, case):
         """The lines of a case whose runs are there, each with our number."""
@@ -41,5 +43,3 @@ def program():
     if answer.returncode:
         raise SystemExit(answer.returncode)
     return answer.stdout.strip()
-
-

@@ -25,7 +25,8 @@ def freund(time):
 def opening_intensity(r, opening, reach):
     """K, Pa sqrt(m), from the opening, m, at distances r, m, behind the tip of crack.toml.
 
-    E/(8 (1 - nu^2)) opening sqrt(2 pi/r) tends to K at the tip; the straight line through its values for r in `reach` gives K at r = 0.
+    E/(8 (1 - nu^2)) opening sqrt(2 pi/r) tends to K at the tip; the straight line through its values for r in `reach`
+    gives K at r = 0.
     """
     young, nu = 2.1e11, 0.3
     apparent = young / (8 * (1 - nu**2)) * opening * np.sqrt(2 * np.pi / r)
@@ -37,9 +38,10 @@ def opening_intensity(r, opening, reach):
 def lamb_waves(x):
     """Times, and u1, u2, m, at the surface of lamb.toml, at a distance x from the middle of the force.
 
-    For a traction q(k, s) along y on the surface of the half-plane y < 0, transformed along x (k) and in time (Laplace's s):
-    u2 = q a ks^2/(mu R), u1 = -i k q (2 k^2 + ks^2 - 2 a b)/(mu R), with a^2 = k^2 + s^2/c_P^2, b^2 = k^2 + ks^2, ks = s/c_S,
-    R = (2 k^2 + ks^2)^2 - 4 k^2 a b. Both transforms are inverted by sums: s = 4/s + i w keeps the poles of Rayleigh's wave off the path.
+    For a traction q(k, s) along y on the surface of the half-plane y < 0, transformed along x (k) and in time (Laplace's
+    s): u2 = q a ks^2/(mu R), u1 = i k q (2 k^2 + ks^2 - 2 a b)/(mu R), with a^2 = k^2 + s^2/c_P^2, b^2 = k^2 + ks^2,
+    ks = s/c_S, R = (2 k^2 + ks^2)^2 - 4 k^2 a b, for waves exp(i k x). Both transforms are inverted by sums: with 4 as the
+    real part of s (1/s) the pole of Rayleigh's wave does not lie on the path.
     """
     c_p, c_s, density = 3200.0, 1847.5, 2200.0
     mu, damping, span, length = density * c_s**2, 4.0, 4.0, 24000.0

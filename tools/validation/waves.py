@@ -53,10 +53,11 @@ RAYLEIGH = Case(
     "rayleigh",
     "Rayleigh wave",
     "validation/rayleigh.toml",
-    "A wave runs along the free surface of linear elastic steel. It is the classical wave of Rayleigh; its speed is .92741 times that of "
-    "shear waves for a Poisson's ratio of .3. One length of the wave is computed, periodic at the sides, for one period in time; after it "
-    "the velocity of the surface must be that of the start. The error is the largest one along the surface, as a share of the largest "
-    "velocity. It shows that free surfaces and moved ones keep the order of the method, N + 1 at degree N.",
+    "A wave runs along the free surface of linear elastic steel. It is the classical wave of Rayleigh; its speed is "
+    ".92741 times that of shear waves for a Poisson's ratio of .3. One length of the wave is computed, periodic at "
+    "the sides, for one period in time; after it the velocity of the surface must be that of the start. The error is"
+    " the largest one along the surface, as a share of the largest velocity. It shows that free surfaces and moved "
+    "ones keep the order of the method, N + 1 at degree N.",
     [
         surface_line("S2, 8 x 8", 8.5e-3),
         surface_line("S2, 16 x 16", 1e-3),
@@ -70,7 +71,8 @@ RAYLEIGH = Case(
             RAYLEIGH_SPEED,
             EXACT,
             1e-4,
-            "such an error of the phase makes an error of the velocity of 2 pi 1e-4, that of the surface velocity on this mesh",
+            "such an error of the phase makes an error of the velocity of 2 pi 1e-4, that of the surface velocity on"
+            " this mesh",
             lambda runs: surface_speed(runs["S3, 8 x 8"]),
             ("S3, 8 x 8",),
         ),
@@ -88,9 +90,11 @@ DISC = Case(
     "disc",
     "Breathing disc",
     "validation/disc.toml",
-    "A linear elastic disc vibrates in its first radial mode, v_r = J1(z r) cos(w t). After one period the velocity must be that of the "
-    "start: the error is the relative L2 difference of the two. The cells have straight edges, so that the disc is a polygon, and this "
-    "error of the geometry holds the order at 2: degree 3 has an error of 9.7e-4 on 6 x 6 cells a block and of 2.4e-4 on 12 x 12, as degree 2. The time of one period is measured at the rim.",
+    "A linear elastic disc vibrates in its first radial mode, v_r = J1(z r) cos(w t). After one period the velocity "
+    "must be that of the start: the error is the relative L2 difference of the two. The cells have straight edges, "
+    "so that the disc is a polygon, and this error of the geometry holds the order at 2: degree 3 has an error of "
+    "9.7e-4 on 6 x 6 cells a block and of 2.4e-4 on 12 x 12, as degree 2. The time of one period is measured at the "
+    "rim.",
     [
         Line(
             f"error of the velocity after a period, {label} cells a block",
@@ -128,7 +132,12 @@ DISC = Case(
             ("12 x 12",),
         ),
     ],
-    Picture("Pressure after a quarter of a period, where the disc is largest (6 x 6 cells a block).", "pressure", "6 x 6", 1.25774575e-4),
+    Picture(
+        "Pressure after a quarter of a period, where the disc is largest (6 x 6 cells a block).",
+        "pressure",
+        "6 x 6",
+        1.25774575e-4,
+    ),
     {
         "3 x 3": ["mesh.file=disc_coarse.msh"],
         "6 x 6": [],
@@ -149,12 +158,13 @@ LAMB = Case(
     "lamb",
     "Lamb's problem",
     "validation/lamb.toml",
-    "A short vertical force on the surface of an elastic half-plane (c_P 3200, c_S 1847.5 m/s; a Ricker wavelet of 14.5 Hz, as in the test "
-    "of Komatitsch and Vilotte, here on a level surface and over a width of 40 m) sends out pressure, shear, head and Rayleigh waves. The "
-    "reference is the integral of Lamb over wavenumber and frequency, which tools/validation/solutions.py evaluates for this very force; "
-    "nothing of it comes from the program. The error is the largest one of the displacement through .8 s, as a share of its largest "
-    "value. It shows waves over ten of their lengths, and that absorbing sides send back nothing that disturbs. On cells of 33 m the four errors "
-    "are .06, .08, .08 and .11 %, so that program and integral tend to the same waves.",
+    "A short vertical force on the surface of an elastic half-plane (c_P 3200, c_S 1847.5 m/s; a Ricker wavelet of "
+    "14.5 Hz, as in the test of Komatitsch and Vilotte, here on a level surface and over a width of 40 m) sends out "
+    "pressure, shear, head and Rayleigh waves. The reference is the integral of Lamb over wavenumber and frequency, "
+    "which tools/validation/solutions.py evaluates for this very force; nothing of it comes from the program. The "
+    "error is the largest one of the displacement through .8 s, as a share of its largest value. It shows waves over"
+    " ten of their lengths, and that absorbing sides send back nothing that disturbs. On cells of 33 m the four "
+    "errors are .06, .08, .08 and .11 %, so that program and integral tend to the same waves.",
     [
         Line(
             f"error of u{component} at {x:.0f} m",
@@ -169,7 +179,11 @@ LAMB = Case(
         for name, x, allowed in (("near", 500.0, 6.5e-3), ("far", 1000.0, 1.15e-2))
         for component in (1, 2)
     ],
-    Picture("Velocity along y after .5 s: the Rayleigh wave at the surface, the shear wave and the pressure wave ahead of it.", "velocity_2", limit=0.015),
+    Picture(
+        "Velocity along y after .5 s: the Rayleigh wave at the surface, shear and pressure waves ahead of it.",
+        "velocity_2",
+        limit=0.015,
+    ),
     quick=("",),
 )
 
@@ -185,12 +199,13 @@ CRACK = Case(
     "crack",
     "Half-plane crack under a step of tension",
     "validation/crack.toml",
-    "A plate with a crack is pulled at its top, all at once. The crack is made by a condition on edges inside of the mesh. When the plane "
-    "wave reaches it, at t_c, the stress intensity K at its tip grows as the square root of the time since then (Freund, Dynamic fracture "
-    "mechanics, 1990), until waves come back from the top and the bottom at 3 t_c. K comes from the opening: E/(8 (1 - nu^2)) times the "
-    "opening times sqrt(2 pi/r) is a straight line near the tip, from two cells behind it to a quarter of the way of the wave, and its "
-    "value at r = 0 is K. It is 2.5 % too large at 3 t_c on these cells, 1.9 and 1.5 % on cells of half and a quarter of the size; degree 3 changes "
-    "little (2.2 %).",
+    "A plate with a crack is pulled at its top, all at once. The crack is made by a condition on edges inside of the"
+    " mesh. When the plane wave reaches it, at t_c, the stress intensity K at its tip grows as the square root of "
+    "the time since then (Freund, Dynamic fracture mechanics, 1990), until waves come back from the top and the "
+    "bottom at 3 t_c. K comes from the opening: E/(8 (1 - nu^2)) times the opening times sqrt(2 pi/r) is a straight "
+    "line near the tip, from two cells behind it to a quarter of the way of the wave, and its value at r = 0 is K. "
+    "It is 2.5 % too large at 3 t_c on these cells, 1.9 and 1.5 % on cells of half and a quarter of the size; degree"
+    " 3 changes little (2.2 %).",
     [
         Line(
             f"K at {name} t_c",
@@ -212,11 +227,12 @@ PLATE = Case(
     "plate",
     "Free bending of a beryllium plate",
     "validation/plate.toml",
-    "A free plate of 60 mm x 10 mm starts with the velocity of the first bending mode of a thin beam. It is too thick for the theory of "
-    "thin plates (period 26.6 us). At a thousandth of the amplitude the reference is the first frequency of the plane-strain problem by "
-    "scikit-fem (Q2 elements, three meshes that agree to 1e-6). At the full amplitude, that of the test of hydrodynamic codes, it is the same "
-    "motion by another method: tests/reference/vibration.py, implicit finite elements for the displacement, with the same law. Both "
-    "periods come from the best sine through three periods of the middle of the plate.",
+    "A free plate of 60 mm x 10 mm starts with the velocity of the first bending mode of a thin beam. It is too "
+    "thick for the theory of thin plates (period 26.6 us). At a thousandth of the amplitude the reference is the "
+    "first frequency of the plane-strain problem by scikit-fem (Q2 elements, three meshes that agree to 1e-6). At "
+    "the full amplitude, that of the test of hydrodynamic codes, it is the same motion by another method: "
+    "tests/reference/vibration.py, implicit finite elements for the displacement, with the same law. Both periods "
+    "come from the best sine through three periods of the middle of the plate.",
     [
         Line(
             "period, small amplitude",
@@ -234,12 +250,18 @@ PLATE = Case(
             2.9994e-5,
             COMPUTED,
             1e-3,
-            "the sine is fitted to three periods of a motion with other modes; the finite elements differ by 3e-4 among themselves",
+            "the sine is fitted to three periods of a motion with other modes; the finite elements differ by 3e-4 "
+            "among themselves",
             lambda runs: 2 * np.pi / frequency(*track(runs["full"], "middle", "displacement_2"), 210000.0),
             ("full",),
         ),
     ],
-    Picture("Stress along x at full amplitude, after a quarter of a period, where the plate is bent most.", "cauchy_stress_11", "full", 7.2e-6),
+    Picture(
+        "Stress along x at full amplitude, after a quarter of a period, where the plate is bent most.",
+        "cauchy_stress_11",
+        "full",
+        7.2e-6,
+    ),
     {
         "small": [],
         "full": [
@@ -253,12 +275,13 @@ FLAG = Case(
     "flag",
     "Clamped beam under gravity (Turek and Hron, CSM3)",
     "validation/flag.toml",
-    "The beam behind a cylinder of the benchmark of Turek and Hron (2006), with its round root, under gravity alone, from rest. It is long "
-    "and soft: an explicit program needs 73000 steps for a second, which is no good use of it, but shows rotations of 40 degrees and "
-    "large displacements without growth or loss. Reported are displacements of the tip of -14.305 +- 14.305 mm and -63.607 +- 65.160 "
-    "mm and 1.0995 Hz (quoted from memory; the tables of the authors differ by 2 % between their own steps in time). "
-    "tests/reference/vibration.py computes the same beam by implicit finite elements (Q2, 70 x 4 cells, 500 steps), which is the closer test. With "
-    "70 x 4 cells of ours the tip goes down to -129.93 mm and the frequency is 1.0985 Hz.",
+    "The beam behind a cylinder of the benchmark of Turek and Hron (2006), with its round root, under gravity alone,"
+    " from rest. It is long and soft: an explicit program needs 73000 steps for a second, which is no good use of "
+    "it, but shows rotations of 40 degrees and large displacements without growth or loss. Reported are "
+    "displacements of the tip of -14.305 +- 14.305 mm and -63.607 +- 65.160 mm and 1.0995 Hz (quoted from memory; "
+    "the tables of the authors differ by 2 % between their own steps in time). tests/reference/vibration.py computes"
+    " the same beam by implicit finite elements (Q2, 70 x 4 cells, 500 steps), which is the closer test. With 70 x 4"
+    " cells of ours the tip goes down to -129.93 mm and the frequency is 1.0985 Hz.",
     [
         Line(
             "lowest u2 of the tip",
@@ -266,7 +289,8 @@ FLAG = Case(
             -0.129551,
             COMPUTED,
             0.01,
-            "both programs have corners with a singular stress at the root: 35 x 2 and 70 x 4 elements differ by .2 %, 35 x 2 and 70 x 4 of our cells by .4 %",
+            "both programs have corners with a singular stress at the root: 35 x 2 and 70 x 4 elements differ by .2 "
+            "%, 35 x 2 and 70 x 4 of our cells by .4 %",
             lambda runs: lowest(runs[""], "tip", "displacement_2"),
         ),
         Line(
