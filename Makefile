@@ -2,18 +2,20 @@
 # make test     every test
 # make study    what accuracy costs in time: tables and plots of docs/cost.md
 # make hard-cases   shocks, corners, long runs and other hard cases: docs/hard_cases.md and its pictures
+# make validation   cases with exact or independent values: docs/validation.md and its pictures (three minutes)
 # make effects  what each effect costs the standard scene: docs/effects.md
 # make proof    that effects which a scene does not ask for cost nothing (ten minutes)
 # make faults   kills, full disks, corrupted bytes: the table of docs/reliability.md (some minutes)
 # make paraview   all kinds of exported files in the real ParaView: docs/img/paraview.png
 # make bench    the speed of the step on this machine: tables and roofline of docs/performance.md
-.PHONY: help setup build demo test study hard-cases effects proof faults paraview bench clean
+.PHONY: help setup build demo test study hard-cases validation effects proof faults paraview bench clean
 
 help:
 	@echo "make demo    install what is missing, build, run the paper's impact with all methods, draw its figures"
 	@echo "make test    install what is missing, run every test"
 	@echo "make study   measure what accuracy costs in time: the tables and plots of docs/cost.md, again"
 	@echo "make hard-cases   run all hard cases (twenty minutes) and write docs/hard_cases.md and docs/hard/, again"
+	@echo "make validation   run the cases with exact or independent values (three minutes) and write docs/validation.md, again"
 	@echo "make effects  measure what each effect costs (some minutes): src/effects/measured.csv, docs/effects.md"
 	@echo "make proof   show that what a scene does not ask for costs nothing (ten minutes)"
 	@echo "make faults  kill runs, fill disks, corrupt files (some minutes) and write docs/reliability.md again"
@@ -41,6 +43,9 @@ study: build
 
 hard-cases: build
 	@tools/hard_cases.sh
+
+validation: build
+	@.venv/bin/python tools/validation --page
 
 effects: build
 	@tools/effects.sh

@@ -355,7 +355,7 @@ fn json(item: &toml_edit::Item) -> Value {
 fn scenes() -> Vec<(String, String)> {
     let root = python::root();
     let mut all = Vec::new();
-    for folder in ["meshes", "meshes/hard"] {
+    for folder in ["meshes", "meshes/hard", "meshes/validation"] {
         let files = std::fs::read_dir(root.join(folder)).unwrap().map(|entry| entry.unwrap().path());
         for path in files.filter(|path| path.extension().is_some_and(|ending| ending == "toml")) {
             all.push((path.display().to_string(), std::fs::read_to_string(&path).unwrap()));

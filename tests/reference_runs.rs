@@ -47,6 +47,19 @@ fn compare(python: &Path, run: &Path, reference: &Path, suffix: &str, limit: &st
     );
 }
 
+/// A part of docs/validation.md, with the bounds of its list (`tools/validation`): waves, vibrations, plastic flow, contact, a crack.
+#[test]
+fn cases_of_validation_are_within_the_bounds_of_their_page() {
+    let Some(python) = python::python() else { return };
+    let mut command = Command::new(python);
+    command.env("DGMPM", env!("CARGO_BIN_EXE_dgmpm")).args(["tools/validation", "--quick"]).current_dir(python::root());
+    let output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stdout);
+    println!("{text}");
+    assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stderr));
+    assert!(text.matches(": within").count() > 22, "the quick set has shrunk:\n{text}");
+}
+
 fn stored_blocks() -> PathBuf {
     python::root().join("tests/data/impact_blocks30.npz")
 }

@@ -24,12 +24,12 @@ pub struct Series {
     pub time_degree: usize,
     /// Where the points of ADER-DGMPM stand; none: as the scene says.
     pub layout: Option<String>,
-    /// What the study varies beside them: `KEY=VALUE` of the scene, such as `curl.control=off`.
+    /// What is set otherwise than in the scene, `key=value` each, where the study compares values of keys.
     pub sets: Vec<String>,
 }
 
 impl Series {
-    /// As in tables: `ader-dgmpm S2`, with T where N_T is another, and with the layout and the keys that the study varies.
+    /// As in tables: `ader-dgmpm S2`, with T where N_T is another, and with layout and keys where the study varies them.
     pub fn name(&self) -> String {
         let time = if self.time_degree == self.degree { String::new() } else { format!("T{}", self.time_degree) };
         let layout = self.layout.as_ref().map_or(String::new(), |layout| format!(" {layout}"));
@@ -60,7 +60,7 @@ impl Case {
 
     /// The `--set` that make this case of the scene.
     pub fn sets(&self, scene: &Scene) -> Vec<String> {
-        let Series { method, degree, time_degree, layout, sets: varied } = &self.series;
+        let Series { method, degree, time_degree, layout, sets: compared } = &self.series;
         let mut sets = vec![
             format!("scheme.method={}", method.name()),
             format!("scheme.degree={degree}"),
@@ -74,8 +74,7 @@ impl Case {
         if matches!(scene.scheme.step, Step::Cfl(_)) {
             sets.push(format!("scheme.safety={SAFETY}"));
         }
-        // Last, so that what is compared counts.
-        sets.extend(varied.iter().cloned());
+        sets.extend(compared.iter().cloned());
         sets
     }
 
@@ -148,12 +147,12 @@ mod tests {
 
     #[test]
     fn names_say_what_is_not_the_default() {
-        let series = Series { method: Method::AderDgmpm, degree: 3, time_degree: 3, layout: None, sets: vec![] };
+        let series = Series { method: Method::AderDgmpm, degree: 3, time_degree: 3, layout: None, sets: Vec::new() };
         assert_eq!(series.name(), "ader-dgmpm S3");
         let series = Series { time_degree: 1, layout: Some("jitter".into()), ..series };
         assert_eq!(series.name(), "ader-dgmpm S3T1 jitter");
-        let series = Series { layout: None, sets: vec!["curl.control=off".into()], ..series };
-        assert_eq!(series.name(), "ader-dgmpm S3T1 curl.control=off");
+        let series = Series { layout: None, sets: vec!["curl.control=lcf".into()], ..series };
+        assert_eq!(series.name(), "ader-dgmpm S3T1 curl.control=lcf");
     }
 
     #[test]
@@ -164,8 +163,13 @@ mod tests {
             ["left", "right", "bottom", "top"].map(|g| format!("[[boundary]]\ngroup = \"{g}\"\nkind = \"wall\"\n"));
         let text = format!("{text}{}", walls.join(""));
         let scene = Scene::parse(&text, std::path::Path::new("x.toml"), &[]).unwrap();
-        let series =
-            Series { method: Method::AderDgmpm, degree: 3, time_degree: 1, layout: Some("gauss".into()), sets: vec![] };
+        let series = Series {
+            method: Method::AderDgmpm,
+            degree: 3,
+            time_degree: 1,
+            layout: Some("gauss".into()),
+            sets: Vec::new(),
+        };
         let case = Case { series, refinement: 0.5 };
         // At least one cell in each direction.
         assert_eq!((case.rectangle([30, 1]), case.cells(&scene, 30)), ([15, 1], 15));

@@ -69,7 +69,7 @@ mod tests {
             degree,
             time_degree: degree,
             layout: None,
-            sets: vec![],
+            sets: Vec::new(),
         };
         Record { cpu, error: Some(error), ..Record::failed(Case { series, refinement }, "done".into()) }
     }

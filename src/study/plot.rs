@@ -49,11 +49,15 @@ pub fn plot(records: &[Record], axis: Axis, title: &str, measure: &Measure, path
 
 /// A line for each series that has a point, in the order of the records.
 fn lines(records: &[Record], axis: Axis) -> Vec<Line> {
-    let line = |series: &Series| {
+    let all = series_of(records);
+    // Lines of one degree and method would look alike where a study varies something else.
+    let varied = all.iter().any(|series| series.layout.is_some() || !series.sets.is_empty());
+    let line = |(k, series): (usize, &Series)| {
         let Build { marker, stroke, .. } = *series.method.build();
-        Line { name: series.name(), colour: series.degree, marker, stroke, points: points(records, series, axis) }
+        let colour = if varied { k } else { series.degree };
+        Line { name: series.name(), colour, marker, stroke, points: points(records, series, axis) }
     };
-    series_of(records).into_iter().map(line).filter(|line| !line.points.is_empty()).collect()
+    all.into_iter().enumerate().map(line).filter(|line| !line.points.is_empty()).collect()
 }
 
 /// Records of a series that can stand in a plot, from coarse to fine.

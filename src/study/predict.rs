@@ -146,8 +146,13 @@ mod tests {
 
     /// A record of a series with e = h^p and seconds = steps (1e-6 + 2e-5 blocks).
     fn record(cells: usize, p: f64) -> Record {
-        let series =
-            Series { method: crate::registry::Method::RkDgfem, degree: 3, time_degree: 3, layout: None, sets: vec![] };
+        let series = Series {
+            method: crate::registry::Method::RkDgfem,
+            degree: 3,
+            time_degree: 3,
+            layout: None,
+            sets: Vec::new(),
+        };
         let h = 1.0 / cells as f64;
         let (steps, blocks) = (10 * cells, (cells * cells).div_ceil(8));
         Record {

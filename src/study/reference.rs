@@ -79,7 +79,8 @@ impl Reference {
             return Ok(Self::Exact(exact));
         }
         let case = |degree: usize, refinement: f64| {
-            let series = Series { method: Method::RkDgfem, degree, time_degree: degree, layout: None, sets: vec![] };
+            let series =
+                Series { method: Method::RkDgfem, degree, time_degree: degree, layout: None, sets: Vec::new() };
             Case { series, refinement }
         };
         let mut finer = Finer::run(scene, case(degree, refinement), interrupt)?;

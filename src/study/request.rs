@@ -13,6 +13,15 @@ const ROUNDING: f64 = 1e-13;
 /// The largest degree of a scene.
 const MOST_DEGREE: usize = 6;
 
+/// Keys that have an option of their own.
+const OPTIONS: [(&str, &str); 5] = [
+    ("scheme.method", "--methods"),
+    ("scheme.degree", "--degrees"),
+    ("scheme.time_degree", "--time-degrees"),
+    ("mesh", "--refine"),
+    ("cloud.layout", "--layouts"),
+];
+
 /// What is compared, as a user names it. An empty list stands for the default.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Request {
@@ -26,7 +35,7 @@ pub struct Request {
     pub refinements: Vec<f64>,
     /// Names of layouts of ADER-DGMPM; empty: that of the scene.
     pub layouts: Vec<String>,
-    /// What is compared beside them, each as `KEY=VALUE|VALUE..`, such as `curl.control=rotation|off`: keys of the scene.
+    /// Keys of the scene with the values that are compared, such as `curl.control=lcf|off`; several: each with each.
     pub compare: Vec<String>,
     /// Degree and refinement of the reference run; empty: one degree more than the largest, on the finest mesh.
     pub reference: Vec<f64>,
@@ -106,23 +115,27 @@ impl Request {
         }
     }
 
-    /// All ways to choose one value of each key that is compared.
+    /// Each value of each key with each of the others: lists of `key=value`; one empty list where nothing is compared.
     fn compared(&self) -> Result<Vec<Vec<String>>> {
         let mut all = vec![Vec::new()];
         for text in &self.compare {
-            let values = text.split_once('=').map(|(key, values)| (key, values.split('|').collect::<Vec<_>>()));
-            let Some((key, values)) = values.filter(|(key, values)| !key.trim().is_empty() && values.len() > 1) else {
-                let what = format!("--compare is `{text}`");
+            let parts = text.split_once('=').map(|(key, values)| (key.trim(), values.split('|').map(str::trim)));
+            let Some((key, values)) =
+                parts.filter(|(key, values)| !key.is_empty() && values.clone().all(|v| !v.is_empty()))
+            else {
+                let what = format!("--compare {text:?} is not KEY=VALUE|VALUE");
                 return Err(Error::input(
                     what,
-                    "give a key of the scene and two values or more: 'curl.control=rotation|off'",
+                    "give a key of the scene with its values, such as \"curl.control=lcf|off\"",
                 ));
             };
-            let longer = |chosen: &Vec<String>, value: &str| {
-                let set = format!("{}={}", key.trim(), value.trim());
-                chosen.iter().cloned().chain([set]).collect::<Vec<_>>()
-            };
-            all = all.iter().flat_map(|chosen| values.iter().map(|value| longer(chosen, value))).collect();
+            if let Some((_, option)) =
+                OPTIONS.iter().find(|(own, _)| key == *own || key.starts_with(&format!("{own}.")))
+            {
+                return Err(Error::input(format!("--compare takes no `{key}`"), format!("give {option}")));
+            }
+            let with = |sets: &Vec<String>, value| [&sets[..], &[format!("{key}={value}")]].concat();
+            all = all.iter().flat_map(|sets| values.clone().map(move |value| with(sets, value))).collect();
         }
         Ok(all)
     }
@@ -142,15 +155,9 @@ impl Request {
                 let own = [degree];
                 let times = if self.time_degrees.is_empty() { &own[..] } else { &self.time_degrees };
                 for &time_degree in times {
-                    let of = |(layout, sets): (&Option<String>, &Vec<String>)| Series {
-                        method,
-                        degree,
-                        time_degree,
-                        layout: layout.clone(),
-                        sets: sets.clone(),
-                    };
-                    let each = layouts.iter().flat_map(|layout| compared.iter().map(move |sets| (layout, sets)));
-                    all.extend(each.map(of));
+                    for (layout, sets) in layouts.iter().flat_map(|layout| compared.iter().map(move |s| (layout, s))) {
+                        all.push(Series { method, degree, time_degree, layout: layout.clone(), sets: sets.clone() });
+                    }
                 }
             }
         }

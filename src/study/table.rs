@@ -17,7 +17,7 @@ pub const COLUMNS: [&str; 28] = [
     "degree",
     "time_degree",
     "layout",
-    "set",
+    "compared",
     "refinement",
     "cells",
     "dofs",
@@ -65,9 +65,7 @@ pub fn csv(records: &[Record], quantities: &[Quantity], head: &[String]) -> Stri
         let Series { method, degree, time_degree, layout, sets } = &r.case.series;
         let mut row = vec![method.name().to_owned(), degree.to_string(), time_degree.to_string()];
         row.push(layout.clone().unwrap_or_default());
-        // Values of keys may hold commas.
-        let set = sets.join(" ").replace('"', "'");
-        row.push(if set.is_empty() { set } else { format!("\"{set}\"") });
+        row.push(text_cell(&sets.join(" ")));
         row.push(r.case.refinement.to_string());
         row.extend([r.cells, r.dofs, r.steps].map(|n| n.to_string()));
         let dt = if r.steps > 0 { r.dt.map(|dt| format!("{dt:e}")) } else { Default::default() };
@@ -90,10 +88,20 @@ pub fn csv(records: &[Record], quantities: &[Quantity], head: &[String]) -> Stri
             row.push(number(r.quantity_errors.get(k).copied().flatten()));
         }
         // The reason of a failure is free text.
-        row.push(format!("\"{}\"", r.status.replace('"', "'").replace('\n', " ")));
+        row.push(quoted(&r.status));
         text += &(row.join(",") + "\n");
     }
     text
+}
+
+/// Free text as a cell.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "'").replace('\n', " "))
+}
+
+/// Text that needs quotes only where a comma or a quote stands in it.
+fn text_cell(text: &str) -> String {
+    if text.contains([',', '"', '\n']) { quoted(text) } else { text.to_owned() }
 }
 
 /// A number of a row; nothing where there is none.

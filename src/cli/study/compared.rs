@@ -20,7 +20,7 @@ pub struct Compared {
     /// Layouts of the points of ADER-DGMPM, such as paper, midpoints, random, rotated [default: that of the scene]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     layouts: Vec<String>,
-    /// A key of the scene and its values, as often as needed: what an effect, a law, a flux costs and brings
+    /// Values of a key of the scene, each as a setting of its own: "curl.control=lcf|off"; several options: each with each
     #[arg(long, value_name = "KEY=A|B")]
     compare: Vec<String>,
     /// Degree and refinement of the run that errors are taken against where no exact solution is known [default: one
