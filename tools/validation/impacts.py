@@ -272,6 +272,7 @@ DISC_IMPACT = Case(
                 / (ledger(runs["8 x 8"], "momentum_1")[-1] - ledger(runs["8 x 8"], "momentum_1")[0])
             ),
             ("8 x 8",),
+            absolute=True,
         ),
         Line(
             "energy left at the end, 8 x 8",

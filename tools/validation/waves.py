@@ -127,7 +127,7 @@ DISC = Case(
             5.030983e-4,
             EXACT,
             1e-3,
-            "the area of the polygon is .06 % too small, its frequency at most as much too large",
+            "the area of the polygon is .07 % too small, as that of a disc with a period .04 % shorter",
             lambda runs: 2 * np.pi / frequency(*track(runs["12 x 12"], "rim", "velocity_1"), 1.2489e4),
             ("12 x 12",),
         ),
