@@ -6,50 +6,63 @@ use super::output::{RunArgs, kept_files};
 use super::print::{say, warn};
 use super::progress::Progress;
 use super::report::report;
-use super::{summary, threads};
+use super::{ranks, summary, threads};
 use crate::error::Result;
 use crate::problem::{Files, Problem, Setup, Store, check_folder, check_run, write_input};
-use crate::run::Folder;
+use crate::run::{Folder, Lock};
 use std::path::Path;
 
 /// Makes and runs it; `operators` is used if it was built from the same input.
 pub fn run(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &RunArgs) -> Result<()> {
-    run.start_threads()?;
-    let kernel = threads::kernel(run.kernel.as_deref())?;
-    let scene = scene.load()?;
-    scene.warnings().iter().for_each(warn);
-    let folder = run.folder(&scene);
-    // All that can be wrong is found before results on the disk are changed.
-    if !run.force {
-        folder.refuse_results()?;
-    }
-    scene.settings()?;
-    let body = files.body(&scene)?;
-    check_run(&scene, &body, operators)?;
-    check_folder((&scene, &body), files, operators, &folder)?;
-    let _lock = folder.lock()?;
-    // Another run may have begun and ended in the meantime.
-    if !run.force {
-        folder.refuse_results()?;
-    }
-    let own = folder.operators();
-    let look: Vec<&Path> = operators.into_iter().chain([own.as_path()]).collect();
-    let problem = Setup::of(&scene).kernel(kernel).store(Store { look: &look, write: &own }).build_on(body)?;
-    say(&scene.title);
+    let (problem, folder, _lock) = ranks::agree(ready(scene, files, operators, run))?;
+    problem.check_ranks()?;
+    say(&problem.scene.title);
     let certificates = report(&problem)?;
     // Quantities that the start of the run has not.
     problem.gauge()?;
     say(&problem.origin);
-    kept_files(&folder.clear_results()?);
-    write_input(&problem, files, &folder, certificates)?;
+    let begin = || {
+        kept_files(&folder.clear_results()?);
+        write_input(&problem, files, &folder, certificates)
+    };
+    problem.agree(if problem.writes() { begin() } else { Ok(()) })?;
     solve(problem, &folder)
+}
+
+/// The problem, and its folder: all that can be wrong is found before results on the disk are changed.
+fn ready(
+    scene: &SceneArgs,
+    files: &Files,
+    operators: Option<&Path>,
+    run: &RunArgs,
+) -> Result<(Problem, Folder, Option<Lock>)> {
+    threads::start(run.threads)?;
+    let kernel = threads::kernel(run.kernel.as_deref())?;
+    let scene = scene.load()?;
+    scene.warnings().iter().for_each(warn);
+    let (folder, writes) = (run.folder(&scene), ranks::writes());
+    let refuse = || if run.force || !writes { Ok(()) } else { folder.refuse_results() };
+    refuse()?;
+    scene.settings()?;
+    let body = files.body(&scene)?;
+    check_run(&scene, &body, operators)?;
+    let take = || check_folder((&scene, &body), files, operators, &folder).and_then(|()| folder.lock());
+    let lock = writes.then(take).transpose()?;
+    // Another run may have begun and ended in the meantime.
+    refuse()?;
+    let own = folder.operators();
+    let look: Vec<&Path> = operators.into_iter().chain([own.as_path()]).collect();
+    let store = Store { look: &look, write: writes.then_some(own.as_path()) };
+    let setup = Setup::of(&scene).kernel(kernel).store(store);
+    Ok((ranks::set_up(setup).build_on(body)?, folder, lock))
 }
 
 /// Steps to the end, and says what came of it.
 pub fn solve(mut problem: Problem, folder: &Folder) -> Result<()> {
     interrupt::listen();
-    let progress = Box::new(Progress::new([problem.scene.start, problem.settings.end]));
-    let (_, result) = problem.record(folder, vec![progress], [&INTERRUPT, &SAVE], summary::print);
+    let progress = Progress::new([problem.scene.start, problem.settings.end]);
+    let more = if problem.writes() { vec![Box::new(progress) as _] } else { vec![] };
+    let (_, result) = problem.record(folder, more, [&INTERRUPT, &SAVE], summary::print);
     say(format!("results in {}", folder.root.display()));
     result
 }

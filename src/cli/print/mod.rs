@@ -7,8 +7,9 @@ mod out;
 
 pub use json::{event, result};
 pub use manner::{Manner, manner, speak};
-pub use out::{all_printed, printed, write};
+pub use out::{all_printed, printed, silence, write};
 
+use super::ranks;
 use crate::error::Error;
 use crate::format::Row;
 use serde_json::{Map, Value, json};
@@ -39,11 +40,19 @@ pub fn warn(text: impl AsRef<str>) {
     }
 }
 
-/// Prints the message of an error on standard error.
+/// Prints the message of an error on standard error, also where this process is to be silent: another rank than 0 gives its number.
 pub fn complain(error: &Error) {
+    out::silence(false);
     match manner() {
         Manner::Json => event("error", manner::of_error(error)),
-        _ => out::complain("error", manner::RED, &error.to_string()),
+        _ => out::complain("error", manner::RED, &format!("{}{error}", of_rank())),
+    }
+}
+
+fn of_rank() -> String {
+    match ranks::number() {
+        0 => String::new(),
+        rank => format!("rank {rank}: "),
     }
 }
 

@@ -4,13 +4,29 @@ use crate::error::{Error, Result};
 use crate::format::Row;
 use anstyle::Style;
 use std::io::{ErrorKind, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// The first reason why standard output could not be written, such as a full device.
 static FAULT: Mutex<Option<String>> = Mutex::new(None);
 
+/// Set where this process says nothing: another rank speaks for it.
+static SILENT: AtomicBool = AtomicBool::new(false);
+
+/// Says nothing from now on but why this process fails; or speaks again.
+pub fn silence(silent: bool) {
+    SILENT.store(silent, Ordering::Relaxed);
+}
+
+fn is_silent() -> bool {
+    SILENT.load(Ordering::Relaxed)
+}
+
 /// Writes a line on standard output.
 pub fn write(text: &str) {
+    if is_silent() {
+        return;
+    }
     let mut out = std::io::stdout().lock();
     printed(writeln!(out, "{text}").and_then(|()| out.flush()));
 }
@@ -37,6 +53,9 @@ pub fn all_printed() -> Result<()> {
 
 /// Writes a line on standard error behind a word, which has a colour on a terminal, unless NO_COLOR says otherwise.
 pub fn complain(word: &str, style: Style, text: &str) {
+    if is_silent() {
+        return;
+    }
     let _ = writeln!(anstream::stderr(), "{style}{word}{style:#}: {text}");
 }
 
