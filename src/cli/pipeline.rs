@@ -8,13 +8,20 @@ use super::progress::Progress;
 use super::report::report;
 use super::{ranks, summary, threads};
 use crate::error::Result;
-use crate::problem::{Files, Problem, Setup, Store, check_folder, check_run, write_input};
+use crate::problem::{Body, Files, Problem, Setup, Store, check_folder, check_run, write_input};
 use crate::run::{Folder, Lock};
+use crate::scene::Scene;
 use std::path::Path;
 
 /// Makes and runs it; `operators` is used if it was built from the same input.
 pub fn run(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &RunArgs) -> Result<()> {
-    let (problem, folder, _lock) = ranks::agree(ready(scene, files, operators, run))?;
+    let (scene, body, folder, _lock) = ranks::agree(read(scene, files, operators, run))?;
+    let own = folder.operators();
+    let look: Vec<&Path> = operators.into_iter().chain([own.as_path()]).collect();
+    let store = Store { look: &look, write: ranks::writes().then_some(&own) };
+    let setup = ranks::set_up(Setup::of(&scene).store(store));
+    let built = threads::kernel(run.kernel.as_deref()).and_then(|kernel| setup.kernel(kernel).build_on(body));
+    let problem = ranks::agree(built)?;
     problem.check_ranks()?;
     say(&problem.scene.title);
     let certificates = report(&problem)?;
@@ -29,15 +36,15 @@ pub fn run(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &Run
     solve(problem, &folder)
 }
 
-/// The problem, and its folder: all that can be wrong is found before results on the disk are changed.
-fn ready(
+/// Scene, body and folder: all that can be wrong is found before results on the disk are changed.
+fn read(
     scene: &SceneArgs,
     files: &Files,
     operators: Option<&Path>,
     run: &RunArgs,
-) -> Result<(Problem, Folder, Option<Lock>)> {
+) -> Result<(Scene, Body, Folder, Option<Lock>)> {
     threads::start(run.threads)?;
-    let kernel = threads::kernel(run.kernel.as_deref())?;
+    threads::kernel(run.kernel.as_deref())?;
     let scene = scene.load()?;
     scene.warnings().iter().for_each(warn);
     let (folder, writes) = (run.folder(&scene), ranks::writes());
@@ -50,11 +57,7 @@ fn ready(
     let lock = writes.then(take).transpose()?;
     // Another run may have begun and ended in the meantime.
     refuse()?;
-    let own = folder.operators();
-    let look: Vec<&Path> = operators.into_iter().chain([own.as_path()]).collect();
-    let store = Store { look: &look, write: writes.then_some(own.as_path()) };
-    let setup = Setup::of(&scene).kernel(kernel).store(store);
-    Ok((ranks::set_up(setup).build_on(body)?, folder, lock))
+    Ok((scene, body, folder, lock))
 }
 
 /// Steps to the end, and says what came of it.
