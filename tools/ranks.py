@@ -238,7 +238,7 @@ def of_runs(work):
         job.ends(f"rank {rank} is stopped", 7, 1 + 5, "has not answered for 1 s", moment)
 
     job = Job(of_ranks(3, PANICS, "run", SMALL, "--out", "panics", *LONG, *sets(['source=[{kind="panic",after=1e-5}]'])), work)
-    job.ends("a panic on a thread of rank 1", 101, 10, "rank 1 panicked")
+    job.ends("a panic on a thread of rank 1", 101, 10, "rank 1: panicked")
 
 
 def goes_on(work):

@@ -11,7 +11,9 @@ if ! has_mpi; then
     exit 0
 fi
 
-cargo build --release -p dgmpm-ranks --bins --examples
+# Both packages are named, so that crates get the features that they have in `cargo test`: none is built twice.
+cargo test --release --quiet -p dgmpm -p dgmpm-ranks --test arguments
+cargo build --release -p dgmpm -p dgmpm-ranks --bin dgmpm --bin dgmpm-mpi --example panics
 target=$(dirname "$(DGMPM='' tools/program.sh)")
 
 # What a container, root, and more ranks than processors need of OpenMPI; other MPIs do not look at it. docs/ranks.md explains each.

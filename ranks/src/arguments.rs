@@ -54,7 +54,8 @@ impl Arguments {
     }
 
     fn set_patience(&mut self, text: &OsStr) {
-        let seconds = text.to_str().and_then(|text| text.parse().ok()).filter(|seconds| (1e-3..=LONGEST).contains(seconds));
+        let seconds =
+            text.to_str().and_then(|text| text.parse().ok()).filter(|seconds| (1e-3..=LONGEST).contains(seconds));
         match seconds {
             Some(seconds) => self.patience = Duration::from_secs_f64(seconds),
             None => self.fault = Some(format!("--patience is `{}`", text.to_string_lossy())),
@@ -67,29 +68,4 @@ pub fn hash(of: impl Hash) -> f64 {
     let mut hasher = DefaultHasher::new();
     of.hash(&mut hasher);
     (hasher.finish() >> 16) as f64
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn parse(line: &str) -> Arguments {
-        Arguments::parse(line.split_whitespace().map(OsString::from))
-    }
-
-    #[test]
-    fn what_is_meant_for_the_ranks_is_taken_and_the_rest_stays_in_its_order() {
-        let parsed = parse("dgmpm-mpi run --patience 2.5 a.toml --meter --set x=1");
-        assert_eq!(parsed.rest, ["dgmpm-mpi", "run", "a.toml", "--set", "x=1"]);
-        assert!(parsed.meter && !parsed.help && parsed.fault.is_none());
-        assert_eq!(parsed.patience, Duration::from_millis(2500));
-        assert_eq!(parse("dgmpm-mpi --patience=7 check").patience, Duration::from_secs(7));
-    }
-
-    #[test]
-    fn a_patience_that_is_no_time_is_a_fault() {
-        for text in ["0", "-1", "soon", "nan", "inf", "1e12", ""] {
-            assert!(parse(&format!("dgmpm-mpi run a.toml --patience {text}")).fault.is_some(), "{text}");
-        }
-    }
 }

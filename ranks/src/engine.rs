@@ -19,10 +19,13 @@ const PIECE: usize = 1 << 30;
 const LONG: Duration = Duration::from_secs(2);
 /// How often it looks then, and in [`Exchange::wait`].
 const PAUSE: Duration = Duration::from_millis(2);
-/// All ranks lose patience at the same time; each one waits so much longer than the one before it, so that one of them has the word.
-const TURN: Duration = Duration::from_millis(500);
+/// All ranks lose patience at the same time; each one waits so much longer than the one before it, so that one of them has the word
+/// (MPI_Abort takes a second, as ranks do not die of SIGTERM).
+const TURN: Duration = Duration::from_millis(1500);
 /// The last turn.
-const TURNS: u32 = 8;
+const TURNS: u32 = 4;
+/// Between two looks no more than this counts as waiting.
+const BLINK: Duration = Duration::from_millis(100);
 
 /// A rank of MPI.
 pub struct Engine {
@@ -45,7 +48,7 @@ impl std::fmt::Debug for Engine {
 pub fn end_all_on_panic(world: Communicator) {
     let rank = world.rank();
     std::panic::set_hook(Box::new(move |what| {
-        eprintln!("error: rank {rank} panicked: {what}");
+        eprintln!("error: rank {rank}: {what}");
         world.abort(PANICKED);
     }));
 }
@@ -136,7 +139,7 @@ impl Engine {
     }
 
     fn wait_for(&self, pending: &mut [Pending], patience: Option<Duration>) -> ferrompi::Result<()> {
-        let start = Instant::now();
+        let (mut waited, mut last) = (Duration::ZERO, Instant::now());
         loop {
             let mut open = None;
             for (from, request) in &mut *pending {
@@ -145,7 +148,9 @@ impl Engine {
                 }
             }
             let Some(from) = open else { return Ok(()) };
-            let waited = start.elapsed();
+            // A rank that was stopped itself has not waited meanwhile.
+            waited += last.elapsed().min(BLINK);
+            last = Instant::now();
             let turn = TURN * TURNS.min(u32::try_from(self.rank).unwrap_or(TURNS));
             if patience.is_some_and(|patience| waited.saturating_sub(turn) > patience) {
                 let name = from.map_or_else(|| "another rank".to_owned(), |from| format!("rank {from}"));
@@ -231,4 +236,3 @@ impl Exchange for Engine {
 
 /// Of messages between two ranks, which come in the order in which they are sent.
 const TAG: i32 = 1;
-

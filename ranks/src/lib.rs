@@ -24,7 +24,9 @@ pub fn main() -> ExitCode {
     let mpi = match Mpi::init_thread(ThreadLevel::Funneled) {
         Ok(mpi) => mpi,
         Err(why) => {
-            eprintln!("error: MPI does not start: {why}\n  start this program by the mpirun of the MPI that it was built with");
+            eprintln!(
+                "error: MPI does not start: {why}\n  start this program by the mpirun of the MPI that it was built with"
+            );
             return ExitCode::from(engine::LOST);
         }
     };

@@ -22,6 +22,7 @@ mod print;
 mod process;
 mod progress;
 mod ranks;
+mod read;
 mod regrid;
 mod report;
 mod resume;

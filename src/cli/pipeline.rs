@@ -3,14 +3,14 @@
 use super::args::SceneArgs;
 use super::interrupt::{self, INTERRUPT, SAVE};
 use super::output::{RunArgs, kept_files};
-use super::print::{say, warn};
+use super::print::say;
 use super::progress::Progress;
+use super::read::read;
 use super::report::report;
 use super::{ranks, summary, threads};
 use crate::error::Result;
-use crate::problem::{Body, Files, Problem, Setup, Store, check_folder, check_run, write_input};
-use crate::run::{Folder, Lock};
-use crate::scene::Scene;
+use crate::problem::{Files, Problem, Setup, Store, write_input};
+use crate::run::Folder;
 use std::path::Path;
 
 /// Makes and runs it; `operators` is used if it was built from the same input.
@@ -34,30 +34,6 @@ pub fn run(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &Run
     };
     problem.agree(if problem.writes() { begin() } else { Ok(()) })?;
     solve(problem, &folder)
-}
-
-/// Scene, body and folder: all that can be wrong is found before results on the disk are changed.
-fn read(
-    scene: &SceneArgs,
-    files: &Files,
-    operators: Option<&Path>,
-    run: &RunArgs,
-) -> Result<(Scene, Body, Folder, Option<Lock>)> {
-    threads::start(run.threads)?;
-    threads::kernel(run.kernel.as_deref())?;
-    let scene = scene.load()?;
-    scene.warnings().iter().for_each(warn);
-    let (folder, writes) = (run.folder(&scene), ranks::writes());
-    let refuse = || if run.force || !writes { Ok(()) } else { folder.refuse_results() };
-    refuse()?;
-    scene.settings()?;
-    let body = files.body(&scene)?;
-    check_run(&scene, &body, operators)?;
-    let take = || check_folder((&scene, &body), files, operators, &folder).and_then(|()| folder.lock());
-    let lock = writes.then(take).transpose()?;
-    // Another run may have begun and ended in the meantime.
-    refuse()?;
-    Ok((scene, body, folder, lock))
 }
 
 /// Steps to the end, and says what came of it.

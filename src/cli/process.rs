@@ -1,10 +1,8 @@
 //! From the command line of the process to its exit code.
 
-use super::print::Manner;
-use super::{Cli, interrupt, print, ranks};
-use crate::error::{Error, Result};
+use super::{Cli, print, ranks};
+use crate::error::Error;
 use crate::exchange::Exchange;
-use crate::file::seal;
 use clap::Parser;
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -25,7 +23,7 @@ pub fn main_on(exchange: Arc<dyn Exchange>, threads: usize, arguments: Vec<OsStr
 /// Runs a command line, and tells what came of it.
 fn told(parsed: std::result::Result<Cli, clap::Error>) -> ExitCode {
     let outcome = match parsed {
-        Ok(cli) => run(cli),
+        Ok(cli) => cli.run(),
         // Help, the version, or a wrong argument, in clap's words and with its exit code, 0 or 2.
         Err(said) => {
             print::printed(if ranks::writes() { said.print() } else { Ok(()) });
@@ -43,26 +41,4 @@ fn told(parsed: std::result::Result<Cli, clap::Error>) -> ExitCode {
         print::complain(&error);
     }
     ExitCode::from(error.exit_code())
-}
-
-/// Runs a parsed command line.
-///
-/// # Errors
-/// The one message for the user; its exit code is [`crate::Error::exit_code`].
-pub fn run(cli: Cli) -> Result<()> {
-    interrupt::outlive_large_files();
-    if cli.trust {
-        seal::trust();
-    }
-    print::speak(match (cli.quiet, cli.json) {
-        (_, true) => Manner::Json,
-        (true, _) => Manner::Quiet,
-        _ => Manner::Plain,
-    });
-    let shared = cli.command.is_shared();
-    let run = |cli: Cli| cli.command.run().and_then(|()| print::all_printed());
-    match shared {
-        true => ranks::first_to_fail(run(cli)),
-        false => ranks::first_to_fail(ranks::alone(|| run(cli))),
-    }
 }

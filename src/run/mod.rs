@@ -30,9 +30,9 @@ use crate::observe::{Observer, View};
 use crate::state::State;
 use crate::step::{Balance, EnergyMade, Motion, Scheme, Survey};
 use crate::words::{Saved, Words};
-use step_size::{check_advance, end_of_step, step_size};
 use cpu_time::ProcessTime;
 use std::sync::atomic::{AtomicBool, Ordering};
+use step_size::{check_advance, end_of_step, step_size};
 use watch::Alarm;
 
 /// How far and in what steps.

@@ -1,10 +1,10 @@
 //! Several ranks that step a body together write the files of one alone, to the byte. Here ranks are threads of one program.
 
 use crate::common::{Bench, assert_same};
-use dgmpm::{Error, Exchange, Kernel};
 use dgmpm::parts::problem::{Problem, Setup};
 use dgmpm::parts::run::Folder;
 use dgmpm::parts::scene::Scene;
+use dgmpm::{Error, Exchange, Kernel};
 use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex};
 use std::time::Duration;
@@ -128,7 +128,8 @@ fn ranks_that_would_not_step_the_same_problem_alike_are_refused_by_all() {
     let out = tempfile::tempdir().unwrap();
     let path = out.path().join("run");
     let widest = Kernel::widest();
-    let other = Kernel::NAMES.iter().map(|(_, kernel)| *kernel).find(|kernel| *kernel != widest && kernel.is_available());
+    let other =
+        Kernel::NAMES.iter().map(|(_, kernel)| *kernel).find(|kernel| *kernel != widest && kernel.is_available());
     // The portable path is always there.
     let other = other.unwrap();
     let errors = outcomes(|rank, setup| setup.kernel([widest, other][rank]).build(), [&path; 2]);

@@ -1,26 +1,14 @@
 //! Where words go: standard output, and standard error for what is wrong, with colours on a terminal alone.
 
+use super::silent::is_silent;
 use crate::error::{Error, Result};
 use crate::format::Row;
 use anstyle::Style;
 use std::io::{ErrorKind, Write};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// The first reason why standard output could not be written, such as a full device.
 static FAULT: Mutex<Option<String>> = Mutex::new(None);
-
-/// Set where this process says nothing: another rank speaks for it.
-static SILENT: AtomicBool = AtomicBool::new(false);
-
-/// Says nothing from now on but why this process fails; or speaks again.
-pub fn silence(silent: bool) {
-    SILENT.store(silent, Ordering::Relaxed);
-}
-
-fn is_silent() -> bool {
-    SILENT.load(Ordering::Relaxed)
-}
 
 /// Writes a line on standard output.
 pub fn write(text: &str) {

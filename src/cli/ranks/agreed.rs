@@ -1,45 +1,8 @@
-//! The ranks that step a run together. In the program that runs alone there are none.
+//! What ranks agree on, so that all of them go on or none.
 
+use super::{exchange, writes};
 use crate::error::{Error, Result};
-use crate::exchange::{self, Exchange, first_that_differs, numbers_of_all};
-use crate::problem::Setup;
-use std::sync::{Arc, OnceLock};
-
-/// What the engine gives to a rank: the way to the others, and how many threads it has where nobody names a number.
-static RANKS: OnceLock<(Arc<dyn Exchange>, usize)> = OnceLock::new();
-
-/// Makes this process one of several ranks, for all that follows.
-pub fn join(exchange: Arc<dyn Exchange>, threads: usize) {
-    RANKS.get_or_init(|| (exchange, threads));
-}
-
-/// The way to the others.
-pub fn exchange() -> Option<Arc<dyn Exchange>> {
-    RANKS.get().map(|(exchange, _)| exchange.clone())
-}
-
-/// The threads of a rank.
-pub fn threads() -> Option<usize> {
-    RANKS.get().map(|(_, threads)| *threads)
-}
-
-/// The number of this rank, from 0; 0 where it runs alone.
-pub fn number() -> usize {
-    RANKS.get().map_or(0, |(exchange, _)| exchange.rank())
-}
-
-/// Whether this rank prints and writes files.
-pub fn writes() -> bool {
-    number() == 0
-}
-
-/// The setup with the ranks in it.
-pub fn set_up(setup: Setup) -> Setup {
-    match exchange() {
-        Some(exchange) => setup.exchange(exchange),
-        None => setup,
-    }
-}
+use crate::exchange::{self, first_that_differs, numbers_of_all};
 
 /// The result where all ranks have got on, see [`exchange::agree`].
 pub fn agree<T>(result: Result<T>) -> Result<T> {
