@@ -232,10 +232,10 @@ def of_runs(work):
     job.ends("kill -9 of rank 1", None, 5, None, moment)
 
     for rank in (0, 1):
-        job, folder = long_job(work, 3, "--patience", "1")
+        job, folder = long_job(work, 3, "--patience", "3")
         moment = time.time()
         os.kill(job.pids()[rank], signal.SIGSTOP)
-        job.ends(f"rank {rank} is stopped", 7, 1 + 5, "has not answered for 1 s", moment)
+        job.ends(f"rank {rank} is stopped", 7, 3 + 5, "has not answered for 3 s", moment)
 
     job = Job(of_ranks(3, PANICS, "run", SMALL, "--out", "panics", *LONG, *sets(['source=[{kind="panic",after=1e-5}]'])), work)
     job.ends("a panic on a thread of rank 1", 101, 10, "rank 1: panicked")
