@@ -74,6 +74,14 @@ pub enum Error {
         /// The system's reason.
         why: String,
     },
+    /// Another rank of the run has failed, and says why; this one ends with it, with the same exit code.
+    #[error("rank {rank} has failed")]
+    OtherRank {
+        /// Which one.
+        rank: usize,
+        /// Its exit code.
+        code: u8,
+    },
     /// The folder of a run is not whole, or this machine does not give its bits (exit code 6).
     #[error("{}", .0.join("\n  "))]
     NotWhole(Vec<String>),
@@ -129,6 +137,7 @@ impl Error {
             Error::Interrupted(_) => 4,
             Error::Output { .. } => 5,
             Error::NotWhole(_) => 6,
+            Error::OtherRank { code, .. } => *code,
         }
     }
 }

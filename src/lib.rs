@@ -164,6 +164,9 @@ pub use track::{Column, Track, Tracked};
 /// The command line, `dgmpm ..`. A program that adds to [`registry`] first has it with laws, conditions and sources of its own.
 pub use cli::main;
 
+/// The same on several ranks, each of which is a process that calls it. Rank 0 prints and writes files.
+pub use cli::main_on;
+
 /// Says from which commit a program was built, for the files that it writes.
 pub use built::from_commit;
 

@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 metadata=$(cargo metadata --format-version 1 --no-deps --offline)
-read_places='import json, sys; m = json.load(sys.stdin); print(m["target_directory"], m["packages"][0]["version"], sep="\n")'
+read_places='import json, sys; m = json.load(sys.stdin); print(m["target_directory"], next(p["version"] for p in m["packages"] if p["name"] == "dgmpm"), sep="\n")'
 { read -r target; read -r version; } < <("${PYTHON:-python3}" -c "$read_places" <<<"$metadata")
 
 # One warning a test file says that the archive lacks it, as is meant.

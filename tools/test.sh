@@ -17,4 +17,5 @@ export DGMPM_PYTHON=$PWD/.venv/bin/python DGMPM_REQUIRE_PYTHON=1
 # Examples are compiled by clippy, in CI and for who changes them.
 cargo test --release --lib --bins --tests
 cargo test --release --doc
+tools/ranks.sh
 "$DGMPM_PYTHON" -m pytest -q tests/python

@@ -47,3 +47,10 @@ pub enum Command {
     /// Write a manual page for each command
     Man(pages::Man),
 }
+
+impl Command {
+    /// Whether all ranks carry it out; of any other command rank 0 does.
+    pub fn is_shared(&self) -> bool {
+        matches!(self, Self::Run(_) | Self::Solve(_) | Self::Resume(_))
+    }
+}

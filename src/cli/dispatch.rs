@@ -1,8 +1,10 @@
 //! From a subcommand to what it does.
 
 use super::command::Command;
+use super::print::{self, Manner};
 use super::*;
 use crate::error::Result;
+use crate::file::seal;
 
 impl Command {
     /// Runs the command; an error is the one message for the user.
@@ -29,5 +31,23 @@ impl Command {
             Command::Completions(args) => pages::completions(&args),
             Command::Man(args) => pages::man(&args),
         }
+    }
+}
+
+impl Cli {
+    /// Runs a parsed command line; of several ranks all of them or the first one.
+    pub fn run(self) -> Result<()> {
+        interrupt::outlive_large_files();
+        if self.trust {
+            seal::trust();
+        }
+        print::speak(match (self.quiet, self.json) {
+            (_, true) => Manner::Json,
+            (true, _) => Manner::Quiet,
+            _ => Manner::Plain,
+        });
+        let shared = self.command.is_shared();
+        let run = || self.command.run().and_then(|()| print::all_printed());
+        ranks::first_to_fail(if shared { run() } else { ranks::alone(run) })
     }
 }

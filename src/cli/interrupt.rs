@@ -1,7 +1,8 @@
 //! Signals: SIGINT (Ctrl-C), SIGTERM and SIGHUP ask the run to stop and to keep its state, the second one ends the program; SIGUSR1
 //! asks it to keep its state and to go on. A file above the limit of the shell (SIGXFSZ) is an error of that file.
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXFSZ};
+use super::ranks;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGUSR2, SIGXFSZ};
 use signal_hook::flag::{register, register_conditional_shutdown};
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, LazyLock};
@@ -21,6 +22,10 @@ pub fn listen() {
         let _ = register(signal, INTERRUPT.clone());
     }
     let _ = register(SIGUSR1, SAVE.clone());
+    // mpirun hands on this signal and the one before; one to end it ends the ranks a second later.
+    if ranks::exchange().is_some() {
+        let _ = register(SIGUSR2, INTERRUPT.clone());
+    }
 }
 
 /// Takes a file above the limit of the shell for an error of that file, of any command.

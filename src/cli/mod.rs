@@ -21,6 +21,8 @@ mod preprocess;
 mod print;
 mod process;
 mod progress;
+mod ranks;
+mod read;
 mod regrid;
 mod report;
 mod resume;
@@ -33,6 +35,6 @@ mod summary;
 mod threads;
 mod verify;
 
-pub use process::main;
+pub use process::{main, main_on};
 
 use line::Cli;

@@ -1,8 +1,6 @@
 //! Where results go, and on how many threads a run is stepped.
 
 use super::print::note;
-use super::threads::start_threads;
-use crate::error::Result;
 use crate::format::count;
 use crate::run::Folder;
 use crate::scene::Scene;
@@ -30,11 +28,6 @@ impl RunArgs {
     pub fn folder(&self, scene: &Scene) -> Folder {
         let default = || Path::new("runs").join(scene.name());
         Folder::new(&self.out.clone().unwrap_or_else(default))
-    }
-
-    /// Starts the threads.
-    pub fn start_threads(&self) -> Result<()> {
-        self.threads.map_or(Ok(()), start_threads)
     }
 }
 

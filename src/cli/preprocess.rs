@@ -38,7 +38,7 @@ pub fn run(args: &Args) -> Result<()> {
         certificates::strict(&scene, &body)?;
     }
     let look = if args.force { vec![] } else { vec![args.out.as_path()] };
-    let problem = Setup::of(&scene).store(Store { look: &look, write: &args.out }).build_on(body)?;
+    let problem = Setup::of(&scene).store(Store { look: &look, write: Some(&args.out) }).build_on(body)?;
     report(&problem)?;
     say(&problem.origin);
     Ok(())

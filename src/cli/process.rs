@@ -1,19 +1,32 @@
 //! From the command line of the process to its exit code.
 
-use super::print::Manner;
-use super::{Cli, interrupt, print};
-use crate::error::Result;
-use crate::file::seal;
+use super::{Cli, print, ranks};
+use crate::error::Error;
+use crate::exchange::Exchange;
 use clap::Parser;
+use std::ffi::OsString;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Parses the command line of the process and runs it; the message of an error goes to standard error.
 pub fn main() -> ExitCode {
-    let outcome = match Cli::try_parse() {
-        Ok(cli) => run(cli),
+    told(Cli::try_parse())
+}
+
+/// The same for one of several ranks with a command line, which is that of all ranks; `threads` is the default of `--threads`.
+pub fn main_on(exchange: Arc<dyn Exchange>, threads: usize, arguments: Vec<OsString>) -> ExitCode {
+    ranks::join(exchange, threads);
+    print::silence(!ranks::writes());
+    told(Cli::try_parse_from(arguments))
+}
+
+/// Runs a command line, and tells what came of it.
+fn told(parsed: std::result::Result<Cli, clap::Error>) -> ExitCode {
+    let outcome = match parsed {
+        Ok(cli) => cli.run(),
         // Help, the version, or a wrong argument, in clap's words and with its exit code, 0 or 2.
         Err(said) => {
-            print::printed(said.print());
+            print::printed(if ranks::writes() { said.print() } else { Ok(()) });
             match print::all_printed() {
                 Ok(()) => return ExitCode::from(u8::try_from(said.exit_code()).unwrap_or(2)),
                 // Where a message on standard error is lost, the code of the error itself stands.
@@ -22,29 +35,10 @@ pub fn main() -> ExitCode {
             }
         }
     };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // Nobody may read along: the exit code stands.
-            print::complain(&error);
-            ExitCode::from(error.exit_code())
-        }
+    let Err(error) = outcome else { return ExitCode::SUCCESS };
+    // Nobody may read along: the exit code stands. Of another rank's error that one speaks.
+    if !matches!(error, Error::OtherRank { .. }) {
+        print::complain(&error);
     }
-}
-
-/// Runs a parsed command line.
-///
-/// # Errors
-/// The one message for the user; its exit code is [`crate::Error::exit_code`].
-pub fn run(cli: Cli) -> Result<()> {
-    interrupt::outlive_large_files();
-    if cli.trust {
-        seal::trust();
-    }
-    print::speak(match (cli.quiet, cli.json) {
-        (_, true) => Manner::Json,
-        (true, _) => Manner::Quiet,
-        _ => Manner::Plain,
-    });
-    cli.command.run().and_then(|()| print::all_printed())
+    ExitCode::from(error.exit_code())
 }

@@ -3,7 +3,7 @@
 use super::args::SceneArgs;
 use super::output::RunArgs;
 use super::print::say;
-use super::{pipeline, resume};
+use super::{pipeline, ranks, resume, threads};
 use crate::error::Result;
 use crate::problem::{Again, Files};
 
@@ -25,10 +25,15 @@ pub fn run(args: &Args) -> Result<()> {
     if !args.resume {
         return begin(&args.run);
     }
-    args.run.start_threads()?;
-    let scene = args.scene.load()?;
-    let folder = args.run.folder(&scene);
-    match Again::look(&scene, &folder)? {
+    let look = || {
+        threads::start(args.run.threads)?;
+        let scene = args.scene.load()?;
+        let folder = args.run.folder(&scene);
+        Ok((Again::look(&scene, &folder)?, folder))
+    };
+    let (again, folder) = ranks::agree(look())?;
+    ranks::check_same(again.number(), "state of the folder of the run")?;
+    match again {
         Again::Begins { replaces } => begin(&RunArgs { force: replaces, ..args.run.clone() }),
         Again::GoesOn(scene) => resume::go_on(&folder, args.run.kernel.as_deref(), |_| Ok(*scene)),
         Again::Done(words) => {

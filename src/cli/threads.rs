@@ -1,5 +1,6 @@
 //! The number of threads and the instruction set that a user asks for.
 
+use super::ranks;
 use crate::error::{Error, Result};
 use crate::lane::Kernel;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,6 +24,11 @@ pub fn check_threads(threads: usize) -> Result<()> {
         _ => format!("--threads is {threads}, and this machine has {cores} core(s)"),
     };
     Err(Error::input(what, format!("give a number of threads from 1 to {most}; {cores} use all cores")))
+}
+
+/// Starts so many threads for the steps of a run, by default those of this rank.
+pub fn start(threads: Option<usize>) -> Result<()> {
+    threads.or_else(ranks::threads).map_or(Ok(()), start_threads)
 }
 
 /// Starts so many threads for all that follows; the first call of a command counts.

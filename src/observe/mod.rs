@@ -68,6 +68,12 @@ pub trait Observer {
         false
     }
 
+    /// Whether it looks at more of a state than its time, step and survey. Ranks that share a run fetch a state for it, and so each of
+    /// them has such observers at the same times.
+    fn looks_at_unknowns(&self) -> bool {
+        true
+    }
+
     /// The times at which it observes.
     fn schedule(&mut self) -> &mut Schedule;
 

@@ -110,6 +110,11 @@ impl Operators {
         Self { key, ..self }
     }
 
+    /// The hash of their input; empty where none was given.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
     /// (N+1)^2.
     pub fn nodes(&self) -> usize {
         self.line.m * self.line.m

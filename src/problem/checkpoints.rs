@@ -39,8 +39,8 @@ impl Resumed {
 /// Keeps a run in its folder.
 pub struct Checkpoints<'a> {
     folder: &'a Folder,
-    /// The text of the scene in the folder.
-    scene: String,
+    /// The text of the scene in the folder; none on a rank that does not write.
+    scene: Option<String>,
     every: Option<scene::Checkpoint>,
     /// Set from outside to keep the run and go on.
     save: &'a AtomicBool,
@@ -57,8 +57,13 @@ impl<'a> Checkpoints<'a> {
     /// For a run in a folder that has its scene; none in a folder without.
     pub fn new(scene: &Scene, folder: &'a Folder, save: &'a AtomicBool) -> Option<Self> {
         let text = std::fs::read_to_string(folder.scene()).ok()?;
+        Some(Self { scene: Some(text), ..Self::silent(scene, folder, save) })
+    }
+
+    /// For a rank that knows when the run is kept, and leaves that to the first one.
+    pub fn silent(scene: &Scene, folder: &'a Folder, save: &'a AtomicBool) -> Self {
         let (every, last) = (scene.checkpoint, Instant::now());
-        Some(Self { folder, scene: text, every, save, last, kept: None, observed: None, motion: None })
+        Self { folder, scene: None, every, save, last, kept: None, observed: None, motion: None }
     }
 }
 
@@ -95,18 +100,18 @@ impl Keep for OnGrid<'_, '_> {
 
     fn keep(&mut self, moment: &Moment) -> Result<()> {
         let own = &mut *self.checkpoints;
+        (own.last, own.kept) = (Instant::now(), Some(moment.state.step));
+        let Some(scene) = own.scene.clone() else { return Ok(()) };
         pending::check_folder(&own.folder.root)?;
         self.body.keep(own.folder, self.files)?;
         let checkpoint = Checkpoint {
             snapshot: Snapshot { grid: self.files.clone(), ..observe::take(moment.scheme, moment.state) },
-            scene: own.scene.clone(),
+            scene,
             kernel: moment.scheme.kernel.name().to_owned(),
             observed: own.observed == Some(moment.state.step),
             has_snapshot: snapshot::path(&own.folder.snapshots(), moment.state.step).exists(),
             parts: moment.parts.iter().cloned().collect(),
         };
-        checkpoint.write(&own.folder.checkpoints())?;
-        (own.last, own.kept) = (Instant::now(), Some(moment.state.step));
-        Ok(())
+        checkpoint.write(&own.folder.checkpoints()).map(drop)
     }
 }

@@ -132,6 +132,11 @@ impl<'a> Regrids<'a> {
         Ok(Self { scene, folder, schedules, fired, next: None, material, cloud, start, recent, files, table })
     }
 
+    /// Whether it has a folder, with a table of what regrids did.
+    pub(super) fn writes(&self) -> bool {
+        self.folder.is_some()
+    }
+
     /// Puts the grid that is due in place of that of `problem`, and the state on it; what happened in words, and totals before
     /// and after, none where the grid is the same.
     ///

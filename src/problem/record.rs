@@ -1,9 +1,11 @@
 //! A run whose results are kept in a folder, as `dgmpm run` keeps them.
 
+use super::ranks::Silent;
 use super::{Checkpoints, Ended, Files, Outcome, Problem, Solve, check_folder, write_input};
 use crate::error::{Error, Result};
 use crate::observe::Observer;
-use crate::run::{Folder, Report};
+use crate::quantity::Gauge;
+use crate::run::{Folder, Lock, Report, Stop};
 use std::sync::atomic::AtomicBool;
 
 impl Problem {
@@ -17,24 +19,33 @@ impl Problem {
         self.gauge().map(drop)
     }
 
-    /// Steps to the end, and writes input, outputs and summary into a folder; results of an earlier run in it are removed.
+    /// Steps to the end, and writes input, outputs and summary into a folder; results of an earlier run in it are removed. Of several
+    /// ranks the first one writes.
     ///
     /// # Errors
-    /// Files that cannot be written; a run that lost stability, whose last good state is then among the snapshots.
+    /// Files that cannot be written; a run that lost stability, whose last good state is then among the snapshots; what another
+    /// rank has met.
     pub fn run_in(&mut self, folder: &Folder) -> Result<Report> {
-        let files = Files::default();
-        let _lock = folder.lock()?;
-        check_folder((&self.scene, &self.body), &files, None, folder)?;
-        folder.clear_results()?;
-        write_input(self, &files, folder, self.body.certificates.clone())?;
+        let begun = if self.writes() { self.begin_in(folder).map(Some) } else { Ok(None) };
+        let _lock = self.agree(begun)?;
         let never = AtomicBool::new(false);
         let (report, result) = self.record(folder, vec![], [&never; 2], |_, _| {});
         result.map(|()| report)
     }
 
+    /// Takes a folder, and writes the input of the run into it.
+    fn begin_in(&self, folder: &Folder) -> Result<Lock> {
+        let (files, lock) = (Files::default(), folder.lock()?);
+        check_folder((&self.scene, &self.body), &files, None, folder)?;
+        folder.clear_results()?;
+        write_input(self, &files, folder, self.body.certificates.clone())?;
+        Ok(lock)
+    }
+
     /// Steps to the end with the outputs of the scene and `more` observers, and writes the summary; the report, and how it ended.
     /// `look` sees the outcome before it is written, and whether the run came to its end. `asked` are set from outside to stop after the
-    /// step under way, and to keep the run and go on.
+    /// step under way, and to keep the run and go on. Of several ranks the first one writes, and the `more` observers of each may not look
+    /// at unknowns.
     pub fn record(
         &mut self,
         folder: &Folder,
@@ -44,26 +55,48 @@ impl Problem {
     ) -> (Report, Result<()>) {
         let mut report = Report::default();
         let mut gauge = None;
-        let ready = self.observers(folder).and_then(|observers| {
+        let ready = self.observers_of_rank(folder).and_then(|observers| {
             gauge = self.gauge()?;
             Ok(observers)
         });
-        let ended = ready.map_err(Into::into).and_then(|observers| {
+        let writes = self.writes();
+        let ended = self.agree(ready).map_err(Into::into).and_then(|observers| {
             // In this order: `effects` names the clocks of observers by it.
             let mut observers: Vec<Box<dyn Observer + '_>> =
                 observers.into_iter().map(|observer| observer as _).collect();
-            observers.extend(gauge.as_mut().map(|gauge| Box::new(gauge) as Box<dyn Observer + '_>));
+            let gauge = gauge.as_mut().map(|gauge| Box::new(gauge) as Box<dyn Observer + '_>);
+            observers.extend(gauge.map(|gauge| if writes { gauge } else { Box::new(Silent(gauge)) }));
             let own = observers.len();
             observers.extend(more.into_iter().map(|observer| observer as Box<dyn Observer>));
-            let checkpoints = Checkpoints::new(&self.scene, folder, save);
-            self.solve(Solve { folder: Some(folder), observers, own, interrupt, checkpoints }, &mut report)
+            let checkpoints = match writes {
+                true => Checkpoints::new(&self.scene, folder, save),
+                false => Some(Checkpoints::silent(&self.scene, folder, save)),
+            };
+            let folder = writes.then_some(folder);
+            self.solve(Solve { folder, observers, own, interrupt, checkpoints }, &mut report)
         });
-        let Ended { status, loss, result } = Ended::of(ended, self, &report, folder);
+        let result = match writes {
+            true => self.conclude(ended, &mut report, folder, gauge, look),
+            false => ended.map_err(|stop| self.settle(stop)),
+        };
+        (report, self.agree(result))
+    }
+
+    /// Keeps what is to be kept of a run that has ended, and writes its summary; how it ended.
+    fn conclude(
+        &mut self,
+        ended: std::result::Result<(), Stop>,
+        report: &mut Report,
+        folder: &Folder,
+        gauge: Option<Gauge>,
+        look: impl FnOnce(&Outcome, bool),
+    ) -> Result<()> {
+        let Ended { status, loss, result } = Ended::of(ended, self, report, folder);
         report.finish(&self.scheme, &self.state);
         let quantities = gauge.map(|gauge| gauge.measured()).unwrap_or_default();
-        let outcome = Outcome { quantities, ..Outcome::new(self, &report) };
+        let outcome = Outcome { quantities, ..Outcome::new(self, report) };
         look(&outcome, result.is_ok());
         let written = outcome.write(folder, status, loss);
-        (report, result.and(written))
+        result.and(written)
     }
 }

@@ -3,6 +3,7 @@
 use super::differences::difference;
 use super::{Body, Problem, Resumed, Setup};
 use crate::error::{Error, Result};
+use crate::exchange::Exchange;
 use crate::io::checkpoint::{self, Checkpoint};
 use crate::io::fingerprint::Fingerprint;
 use crate::io::{pending, seal};
@@ -10,6 +11,7 @@ use crate::lane::Kernel;
 use crate::run::Folder;
 use crate::scene::Scene;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// The newest checkpoint of a run that is whole.
 pub struct Newest {
@@ -59,14 +61,23 @@ impl Newest {
     /// A scene in which a key differs that may not; files of the folder that are not those of the run; a run that is at its end.
     pub fn problem(self, folder: &Folder, sets: &[String], kernel: Option<Kernel>) -> Result<Problem> {
         let scene = Scene::load(&folder.scene(), sets)?;
-        self.problem_of(folder, scene, kernel)
+        let (problem, later) = self.open(folder, scene, kernel, None)?;
+        later.remove(folder, &problem.scene)?;
+        Ok(problem)
     }
 
-    /// The same with a scene, whose files are those of the folder.
+    /// The same with a scene, whose files are those of the folder, for one of several ranks; and what the run wrote after the
+    /// checkpoint, which is still there.
     ///
     /// # Errors
     /// As for [`Newest::problem`].
-    pub fn problem_of(self, folder: &Folder, scene: Scene, kernel: Option<Kernel>) -> Result<Problem> {
+    pub fn open(
+        self,
+        folder: &Folder,
+        scene: Scene,
+        kernel: Option<Kernel>,
+        exchange: Option<Arc<dyn Exchange>>,
+    ) -> Result<(Problem, Later)> {
         let Checkpoint { snapshot, scene: text, kernel: name, observed, has_snapshot, parts } = self.checkpoint;
         let old = Scene::parse(&text, &folder.scene(), &[])?;
         if let Some(what) = difference(&old, &scene) {
@@ -74,20 +85,20 @@ impl Newest {
             return Err(Error::input(format!("the checkpoint is of another scene: {what}"), remedy));
         }
         // A run that was killed at its end has its last rows still before it.
-        let later = "give a later end by --set time.end=..";
+        let remedy = "give a later end by --set time.end=..";
         if snapshot.time > scene.end {
             let (time, step, end) = (snapshot.time, snapshot.step, scene.end);
             let what = format!(
                 "the run has got to {time:e} s already (step {step}), beyond the end {end:e} s that is asked for"
             );
-            return Err(scene.error("time.end", what, later));
+            return Err(scene.error("time.end", what, remedy));
         }
         if snapshot.time == scene.end && folder.is_done() {
-            return Err(scene.error("time.end", format!("the run is at its end, {:e} s", snapshot.time), later));
+            return Err(scene.error("time.end", format!("the run is at its end, {:e} s", snapshot.time), remedy));
         }
         let kernel = kernel_of(&name, kernel)?;
         let body = Body::read(&scene, folder, &snapshot.grid)?;
-        let problem = Setup::of(&scene).kernel(kernel).build_from(body, |_, scheme| {
+        let problem = Setup { exchange, ..Setup::of(&scene).kernel(kernel) }.build_from(body, |_, scheme| {
             if let Some((what, _)) = snapshot.made_on.misfit(&Fingerprint::of(scheme)) {
                 let what = format!(
                     "mesh, points or materials in {} are not those of the checkpoint: {what}",
@@ -98,12 +109,31 @@ impl Newest {
             scene.state_of(&snapshot, scheme)
         })?;
         let observed_at = observed.then_some(snapshot.step);
-        folder.cut_back(snapshot.step, observed && has_snapshot)?;
+        let later = Later { step: snapshot.step, with_snapshot: observed && has_snapshot };
+        let resumed = Some(Resumed { parts, observed: observed_at });
+        Ok((Problem { files: snapshot.grid, resumed, ..problem }, later))
+    }
+}
+
+/// What a run wrote after its checkpoint.
+pub struct Later {
+    step: usize,
+    /// Whether the snapshot of the step itself stays.
+    with_snapshot: bool,
+}
+
+impl Later {
+    /// Removes it from the folder, and puts the scene that the run goes on with there.
+    ///
+    /// # Errors
+    /// A file that cannot be removed or written.
+    pub fn remove(self, folder: &Folder, scene: &Scene) -> Result<()> {
+        folder.cut_back(self.step, self.with_snapshot)?;
         let wanted = seal::text(&scene.to_toml(), seal::TOML);
         if std::fs::read_to_string(folder.scene()).is_ok_and(|there| there != wanted) {
             pending::write_text(&folder.scene(), &wanted)?;
         }
-        Ok(Problem { files: snapshot.grid, resumed: Some(Resumed { parts, observed: observed_at }), ..problem })
+        Ok(())
     }
 }
 

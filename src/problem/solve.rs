@@ -45,15 +45,19 @@ impl Problem {
     /// See [`Stop`].
     pub fn solve(&mut self, with: Solve, report: &mut Report) -> std::result::Result<(), Stop> {
         let Solve { folder, mut observers, own, interrupt, mut checkpoints } = with;
-        let mut regrids = Regrids::new(self, folder)?;
-        if let Some(resumed) = self.resumed.take() {
+        self.check_ranks()?;
+        let resumed = self.resumed.take();
+        let ready = Regrids::new(self, folder).and_then(|mut regrids| {
+            let Some(resumed) = resumed else { return Ok(regrids) };
             *report = Report::restored(&mut resumed.part(REPORT)?.saved(), self.settings.watch)?;
             restore(&resumed, &mut observers[..own], &mut regrids, &self.grid())?;
             if let Some(checkpoints) = &mut checkpoints {
                 checkpoints.observed = resumed.observed;
                 checkpoints.motion = Some(resumed.part(MOTION)?.clone());
             }
-        }
+            Ok(regrids)
+        });
+        let mut regrids = self.agree(ready)?;
         loop {
             let Self { body, scheme, settings, state, files, .. } = self;
             let mut run = Run { mesh: &body.mesh, scheme, settings: *settings, observers, interrupt };
@@ -69,20 +73,21 @@ impl Problem {
             let (step, time) = (self.state.step, self.state.time);
             let named = |why| at_step(why, step, time);
             let clock = ProcessTime::now();
-            let (words, totals) = regrids.rebuild(self).map_err(named)?;
+            let built = regrids.rebuild(self).map_err(named);
+            let (words, totals) = self.agree(built)?;
+            self.check_ranks()?;
             report.regrids = (report.regrids.0 + clock.elapsed().as_secs_f64(), report.regrids.1 + 1);
             observers.iter_mut().for_each(|observer| words.iter().for_each(|word| observer.notice(word)));
             if let Some([before, after]) = totals {
                 report.regrid(&before, &after);
-                for observer in &mut observers {
-                    observer.regrid(&self.grid()).map_err(named)?;
-                }
+                let told = observers.iter_mut().try_for_each(|observer| observer.regrid(&self.grid()).map_err(named));
+                self.agree(told)?;
             }
         }
     }
 
     /// Takes the last good state that a stop has kept; the stop as an error.
-    fn settle(&mut self, stop: Stop) -> Error {
+    pub(super) fn settle(&mut self, stop: Stop) -> Error {
         match stop {
             Stop::Output(error) => error,
             Stop::Interrupted => Error::Interrupted(format!("at step {}", self.state.step)),
@@ -108,7 +113,14 @@ fn restore(
 ) -> Result<()> {
     let whole =
         |mut saved: Saved, take: &mut dyn FnMut(&mut Saved) -> Result<()>| take(&mut saved).and_then(|()| saved.end());
-    whole(resumed.part(PAUSE)?.saved(), &mut |from| regrids.restore(from))?;
+    whole(resumed.part(PAUSE)?.saved(), &mut |from| {
+        regrids.restore(from)?;
+        if !regrids.writes() {
+            // What is left is of the table.
+            from.skip();
+        }
+        Ok(())
+    })?;
     for (number, observer) in observers.iter_mut().enumerate() {
         observer.regrid(grid)?;
         whole(resumed.part(&keep::observer(number))?.saved(), &mut |from| {

@@ -14,8 +14,8 @@ use std::path::Path;
 pub struct Store<'a> {
     /// Files to look into, in this order.
     pub look: &'a [&'a Path],
-    /// The file that new ones are written to.
-    pub write: &'a Path,
+    /// The file that new ones are written to; none: they are not stored.
+    pub write: Option<&'a Path>,
 }
 
 impl Store<'_> {
@@ -41,14 +41,16 @@ impl Store<'_> {
                 Err(_) => notes.push(format!("{} is damaged", path.display())),
             }
         }
-        if own::is_foreign(self.write) {
+        if self.write.is_some_and(own::is_foreign) {
             let what = format!("{}, and dgmpm has not made it in this folder", notes.join("; "));
             return Err(Error::input(what, "give another folder by --out, or move the file"));
         }
         let blocks = Blocks::new(&body.material, &links);
         let stored = Stored::build(&body.mesh, &blocks, &line, &needs)?;
-        operators_file::write(self.write, &key, &blocks, &stored, &body.certificates)?;
-        notes.push(format!("matrices written to {}", self.write.display()));
+        if let Some(path) = self.write {
+            operators_file::write(path, &key, &blocks, &stored, &body.certificates)?;
+            notes.push(format!("matrices written to {}", path.display()));
+        }
         Ok((Operators::assemble(&body.mesh, line, blocks, &needs, stored).with_key(key), notes.join("; ")))
     }
 }

@@ -80,7 +80,7 @@ pub fn repeat(folder: &Folder, summary: &Value, steps: Option<usize>, kernel: Ke
     let body = Body::read(&scene, folder, &GridFiles::default())?;
     again.clear_results()?;
     let (own, write) = (folder.operators(), again.operators());
-    let store = Store { look: &[&own], write: &write };
+    let store = Store { look: &[&own], write: Some(&write) };
     let mut problem = Setup::of(&scene).kernel(kernel).store(store).build_on(body)?;
     let start = problem.state.step;
     let mut out = Repeated::default();

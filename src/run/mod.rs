@@ -8,6 +8,7 @@ mod norms;
 mod report;
 mod rows;
 mod saved;
+mod step_size;
 mod treated;
 mod watch;
 mod whole;
@@ -31,6 +32,7 @@ use crate::step::{Balance, EnergyMade, Motion, Scheme, Survey};
 use crate::words::{Saved, Words};
 use cpu_time::ProcessTime;
 use std::sync::atomic::{AtomicBool, Ordering};
+use step_size::{check_advance, end_of_step, step_size};
 use watch::Alarm;
 
 /// How far and in what steps.
@@ -217,22 +219,19 @@ impl Run<'_, '_> {
         let mut kept = Kept::new(&motion.state, &motion.survey);
         let h = self.mesh.smallest_h();
         while motion.state.time < self.settings.end {
-            let (time, stops) = (motion.state.time, motion.any(self.interrupt.load(Ordering::Relaxed)));
-            if let Some(keep) = keep.as_deref_mut()
-                && motion.any(keep.due(&motion.state, stops))
-            {
-                motion.make_whole(self.scheme);
-                self.keep(keep, (pause, motion), report)?;
-            }
+            let time = motion.state.time;
+            let stops = self.keep_if_due((pause, keep.as_deref_mut()), motion, report)?;
             let stop = pause.stop(time).unwrap_or(f64::INFINITY).min(self.next_stop(time));
             let stable = self.settings.stable_step(h, motion.survey.fastest);
             let dt = step_size(stop - time, stable);
             let next = end_of_step(time, dt, stop);
             check_advance([time, next, self.settings.end], [stable, dt], h)?;
-            if motion.is_shared() && (pause.looks() || kept.is_due(&motion.state) || self.observes(&motion.state, dt)) {
+            let observes = motion.is_shared() && self.observes(&motion.state, dt);
+            if motion.is_shared() && (pause.looks() || kept.is_due(&motion.state) || observes) {
                 motion.make_whole(self.scheme);
             }
-            self.observe(motion, report, dt)?;
+            let observed = self.observe(motion, report, dt);
+            if observes { motion.agree(observed) } else { observed }?;
             if stops {
                 return Err(Stop::Interrupted);
             }
@@ -259,12 +258,31 @@ impl Run<'_, '_> {
         if let Err(loss) = self.scheme.survey_all(&motion.state, &motion.work, &mut last) {
             return Err(kept.lost(loss, &motion.state, 0.0).into());
         }
-        if let Some(keep) = keep.filter(|keep| keep.at_end()) {
-            self.keep(keep, (pause, motion), report)?;
-        }
+        let keep = keep.filter(|keep| keep.at_end());
+        let ended = keep.map_or(Ok(()), |keep| self.keep(keep, (pause, motion), report));
         report.see(&last);
-        self.observe(motion, report, 0.0)?;
+        let ended = ended.and_then(|()| self.observe(motion, report, 0.0));
+        motion.agree(ended)?;
         Ok(End::Done)
+    }
+
+    /// Keeps the run where that is due; whether it is asked to stop. All ranks find the same.
+    fn keep_if_due(
+        &mut self,
+        (pause, mut keep): (&mut dyn Pause, Option<&mut (dyn Keep + '_)>),
+        motion: &mut Motion,
+        report: &Report,
+    ) -> Result<bool, Error> {
+        let stops = self.interrupt.load(Ordering::Relaxed);
+        let due = keep.as_deref_mut().is_some_and(|keep| keep.due(&motion.state, stops));
+        // A rank that is asked to stop may be another one than that which keeps the run.
+        let [stops, due, is_kept] = motion.any([stops, due, keep.is_some()]);
+        if due || (stops && is_kept) {
+            motion.make_whole(self.scheme);
+            let kept = keep.map_or(Ok(()), |keep| self.keep(keep, (pause, motion), report));
+            motion.agree(kept)?;
+        }
+        Ok(stops)
     }
 
     /// Keeps the run at the state of `motion`, before anybody has observed it.
@@ -283,9 +301,11 @@ impl Run<'_, '_> {
         self.observers.iter_mut().filter_map(|o| o.schedule().stop(time)).fold(self.settings.end, f64::min)
     }
 
-    /// Whether somebody waits for the state.
+    /// Whether somebody waits for the unknowns of the state.
     fn observes(&mut self, state: &State, dt: f64) -> bool {
-        let due = |observer: &mut Box<dyn Observer + '_>| observer.schedule().clone().due(state.step, state.time, dt);
+        let due = |observer: &mut Box<dyn Observer + '_>| {
+            observer.looks_at_unknowns() && observer.schedule().clone().due(state.step, state.time, dt)
+        };
         self.observers.iter_mut().any(due)
     }
 
@@ -309,82 +329,4 @@ impl Run<'_, '_> {
 fn view<'a>(mesh: &'a Mesh, scheme: &'a Scheme, motion: &'a Motion, balance: Option<&'a Balance>, dt: f64) -> View<'a> {
     let treated = motion.work.treated();
     View { mesh, scheme, state: &motion.state, survey: &motion.survey, balance, treated, dt }
-}
-
-/// The time after a step: one that is meant to end at the end of the run or at an exact time ends there to the last bit.
-fn end_of_step(time: f64, dt: f64, stop: f64) -> f64 {
-    let end = time + dt;
-    if (stop - end).abs() < 1e-9 * dt { stop } else { end }
-}
-
-/// Steps of a run that no machine does.
-const ENDLESS: f64 = 1e13;
-
-impl Settings {
-    /// The largest step for cells of size `h`, m, and waves of speed `fastest`, m/s.
-    fn stable_step(&self, h: f64, fastest: f64) -> f64 {
-        let of_waves = self.courant * h / fastest;
-        // Without damping to the last bit what it is without this line.
-        if self.decay == 0.0 { of_waves } else { 1.0 / (1.0 / of_waves + self.decay) }
-    }
-}
-
-/// Refuses a step of `dt` to the time `next` that does not lead to the end: not to a later time, or with a stable step of next to nothing.
-///
-/// # Errors
-/// Bad input: cells without a size, a limit of the step of nothing, or a time whose own rounding is larger than the step.
-fn check_advance([time, next, end]: [f64; 3], [stable, dt]: [f64; 2], h: f64) -> Result<(), Error> {
-    let (advance, endless) = (next - time, (end - time) / stable > ENDLESS);
-    // A hundredth of a step lost by rounding is no noise any more.
-    if dt > 0.0 && advance > 0.0 && (advance - dt).abs() <= 0.01 * dt && !endless {
-        return Ok(());
-    }
-    let what = format!("at t = {time:e} s the next step is {dt:e} s: the run would not get to its end at {end:e} s");
-    let remedy = match (h > 0.0, stable > 0.0 && !endless) {
-        (false, _) => {
-            format!("the smallest cell has the size {h:e} m: give a mesh without collapsed or inverted cells")
-        }
-        (true, false) => format!(
-            "the step is a share of {h:e} m, the size of the smallest cell, over the wave speed: give larger cells, a larger cfl or safety, or a smaller `rate` \
-             where a [[source]] damps"
-        ),
-        (true, true) => "times have 16 digits: let [time] start nearer to 0, or give a larger cfl or safety".to_owned(),
-    };
-    Err(Error::input(what, remedy))
-}
-
-/// The stable step, shortened evenly over the last ones before a time that lies `rest` ahead.
-fn step_size(rest: f64, stable: f64) -> f64 {
-    let steps = (rest / stable - 1e-9).ceil();
-    // Two steps suffice for evenness: none is shorter than half of the stable one.
-    if steps <= 2.0 { rest / steps.max(1.0) } else { stable }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Steps of size up to `stable` through `rest`.
-    fn steps(rest: f64, stable: f64) -> Vec<f64> {
-        let (mut left, mut out) = (rest, Vec::new());
-        while left > 1e-9 * stable {
-            out.push(step_size(left, stable));
-            left -= out.last().unwrap();
-        }
-        out
-    }
-
-    #[test]
-    fn as_few_steps_as_the_limit_allows_and_the_last_two_are_even() {
-        for rest in [0.3, 1.0, 1.2, 2.0, 2.01, 3.0, 7.001, 7.999, 8.0, 41.5] {
-            let all = steps(rest, 1.0);
-            assert_eq!(all.len(), f64::ceil(rest) as usize, "{rest}: {all:?}");
-            // The limit may be passed by the rounding that `step_size` forgives.
-            assert!(all.iter().all(|dt| *dt <= 1.0 + 1e-9), "{rest}: {all:?}");
-            if let [.., a, b] = all[..] {
-                // Roundings of sums of up to 42 steps; neither is shorter than half of the stable step.
-                assert!((a - b).abs() < 1e-12 && b > 0.5, "{rest}: {all:?}");
-            }
-        }
-    }
 }

@@ -12,7 +12,8 @@ use super::received::ReceivedBySide;
 use super::tiles::{Plan, Slot};
 use super::worst::Worst;
 use super::{Scheme, Speeds};
-use crate::exchange::Exchange;
+use crate::error::Result;
+use crate::exchange::{Exchange, agree, numbers_of_all};
 use crate::lane::{F8, LANES};
 use crate::mesh::FACES;
 use crate::operators::Neighbour;
@@ -190,13 +191,16 @@ impl Ranks {
         all.into_iter().fold(Worst::NONE, Worst::and)
     }
 
-    /// Whether a rank says yes.
-    pub fn any(&self, yes: bool) -> bool {
-        let (rank, ranks) = (self.exchange.rank(), self.exchange.ranks());
-        let mut all = vec![0.0; ranks];
-        all[rank] = f64::from(u8::from(yes));
-        self.exchange.gather(&mut all, &(0..=ranks).collect::<Vec<_>>());
-        all.iter().any(|yes| *yes != 0.0)
+    /// To each question whether a rank says yes.
+    pub fn any<const N: usize>(&self, yes: [bool; N]) -> [bool; N] {
+        let bits = yes.iter().rev().fold(0_u32, |bits, yes| 2 * bits + u32::from(*yes));
+        let all = numbers_of_all(&*self.exchange, f64::from(bits)).into_iter().fold(0, |all, bits| all | bits as u32);
+        std::array::from_fn(|k| all >> k & 1 == 1)
+    }
+
+    /// See [`agree`].
+    pub fn agree<T>(&self, result: Result<T>) -> Result<T> {
+        agree(&*self.exchange, result)
     }
 }
 

@@ -231,6 +231,11 @@ impl Scheme {
         Self { exchange: Some(exchange), ..self }
     }
 
+    /// The ranks that step it together; none where it runs alone.
+    pub fn exchange(&self) -> Option<&dyn Exchange> {
+        self.exchange.as_deref()
+    }
+
     /// On this instruction set.
     #[must_use]
     pub fn with_kernel(self, kernel: Kernel) -> Self {

@@ -3,6 +3,7 @@
 use super::obstacles::Obstacles;
 use super::tile_memory::Tiles;
 use super::{Motion, Scheme, Work};
+use crate::error::Result;
 
 impl Work {
     /// Whether several ranks step the body.
@@ -77,8 +78,19 @@ impl Motion {
         }
     }
 
-    /// Whether any rank says yes; without other ranks what is said.
-    pub fn any(&self, yes: bool) -> bool {
+    /// To each question whether any rank says yes; without other ranks what is said.
+    pub fn any<const N: usize>(&self, yes: [bool; N]) -> [bool; N] {
         self.work.tiles.ranks.as_ref().map_or(yes, |ranks| ranks.any(yes))
+    }
+
+    /// The result of this rank, where no other one has failed.
+    ///
+    /// # Errors
+    /// The error of this rank, or that another one has failed.
+    pub fn agree<T>(&self, result: Result<T>) -> Result<T> {
+        match &self.work.tiles.ranks {
+            Some(ranks) => ranks.agree(result),
+            None => result,
+        }
     }
 }

@@ -33,7 +33,7 @@ fn compare(name: &str, scene: &Path, sets: &[&str]) {
     let (file, other) = (out.path().join("operators.h5"), out.path().join("other.h5"));
     store_turned(&scene, &file);
     Problem::new(&scene).unwrap().run_in(&usual).unwrap_or_else(|why| panic!("{name}: {why}"));
-    let mut problem = Setup::of(&scene).store(Store { look: &[&file], write: &other }).build().unwrap();
+    let mut problem = Setup::of(&scene).store(Store { look: &[&file], write: Some(&other) }).build().unwrap();
     assert!(problem.origin.contains("reused") && !other.exists(), "{name}: {}", problem.origin);
     problem.run_in(&turned).unwrap_or_else(|why| panic!("{name}: {why}"));
     assert_same(name, &usual.root, &turned.root);

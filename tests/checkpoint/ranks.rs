@@ -1,10 +1,10 @@
 //! Several ranks that step a body together write the files of one alone, to the byte. Here ranks are threads of one program.
 
 use crate::common::{Bench, assert_same};
-use dgmpm::Exchange;
 use dgmpm::parts::problem::{Problem, Setup};
 use dgmpm::parts::run::Folder;
 use dgmpm::parts::scene::Scene;
+use dgmpm::{Error, Exchange, Kernel};
 use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex};
 use std::time::Duration;
@@ -76,7 +76,14 @@ impl Exchange for Thread {
     }
 }
 
-/// Runs a scene alone and on so many ranks, all of which have the files of the first run.
+/// The ways of so many threads to each other.
+fn threads(ranks: usize) -> Vec<Arc<Thread>> {
+    let table = Table { letters: vec![vec![vec![]; ranks]; ranks], ..Table::default() };
+    let hall = Arc::new(Hall { table: Mutex::new(table), met: Condvar::new() });
+    (0..ranks).map(|rank| Arc::new(Thread { rank, ranks, hall: hall.clone() })).collect()
+}
+
+/// Runs a scene alone and on so many ranks, the first of which has the files of the first run, and the others none.
 fn compare(name: &str, scene: &Path, sets: &[&str], ranks: usize) {
     let out = tempfile::tempdir().unwrap();
     let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
@@ -84,11 +91,8 @@ fn compare(name: &str, scene: &Path, sets: &[&str], ranks: usize) {
     let folder = |name: &str| Folder::new(&out.path().join(name));
     let alone = folder("alone");
     Problem::new(&scene).unwrap().run_in(&alone).unwrap_or_else(|why| panic!("{name}: {why}"));
-    let table = Table { letters: vec![vec![vec![]; ranks]; ranks], ..Table::default() };
-    let hall = Arc::new(Hall { table: Mutex::new(table), met: Condvar::new() });
     std::thread::scope(|scope| {
-        for rank in 0..ranks {
-            let exchange = Arc::new(Thread { rank, ranks, hall: hall.clone() });
+        for (rank, exchange) in threads(ranks).into_iter().enumerate() {
             let (scene, folder) = (&scene, folder(&rank.to_string()));
             scope.spawn(move || {
                 let mut problem = Setup::of(scene).exchange(exchange).build().unwrap();
@@ -96,9 +100,61 @@ fn compare(name: &str, scene: &Path, sets: &[&str], ranks: usize) {
             });
         }
     });
-    for rank in 0..ranks {
-        assert_same(&format!("{name}, {ranks} ranks"), &alone.root, &out.path().join(rank.to_string()));
+    assert_same(&format!("{name}, {ranks} ranks"), &alone.root, &out.path().join("0"));
+    for rank in 1..ranks {
+        assert!(!out.path().join(rank.to_string()).exists(), "{name}: rank {rank} has written");
     }
+}
+
+/// What each of two ranks comes to that run problems which differ.
+fn outcomes(of: impl Fn(usize, Setup<'_>) -> dgmpm::Result<Problem> + Sync, folders: [&Path; 2]) -> Vec<Error> {
+    let bench = Bench::new();
+    let scene = Scene::load(&bench.path("case.toml"), &[QUIET, CELLS].map(str::to_owned)).unwrap();
+    let (scene, of) = (&scene, &of);
+    std::thread::scope(|scope| {
+        let run = |(rank, exchange): (usize, Arc<Thread>)| {
+            scope.spawn(move || {
+                let mut problem = of(rank, Setup::of(scene).exchange(exchange)).unwrap();
+                problem.run_in(&Folder::new(folders[rank])).unwrap_err()
+            })
+        };
+        let all: Vec<_> = threads(2).into_iter().enumerate().map(run).collect();
+        all.into_iter().map(|rank| rank.join().unwrap()).collect()
+    })
+}
+
+#[test]
+fn ranks_that_would_not_step_the_same_problem_alike_are_refused_by_all() {
+    let out = tempfile::tempdir().unwrap();
+    let path = out.path().join("run");
+    let widest = Kernel::widest();
+    let other =
+        Kernel::NAMES.iter().map(|(_, kernel)| *kernel).find(|kernel| *kernel != widest && kernel.is_available());
+    // The portable path is always there.
+    let other = other.unwrap();
+    let errors = outcomes(|rank, setup| setup.kernel([widest, other][rank]).build(), [&path; 2]);
+    for error in errors {
+        assert!(error.exit_code() == 2 && error.to_string().contains("rank 1 would step by"), "{error}");
+    }
+    let moved = |rank, setup: Setup| {
+        let mut problem = setup.build()?;
+        problem.state.u[0].0[0] += rank as f64 * 1e-9;
+        Ok(problem)
+    };
+    for error in outcomes(moved, [&path; 2]) {
+        assert!(error.to_string().starts_with("rank 1 has another scene, mesh, cloud or start"), "{error}");
+    }
+}
+
+#[test]
+fn a_file_that_the_first_rank_cannot_write_ends_all_ranks() {
+    let out = tempfile::tempdir().unwrap();
+    let file = out.path().join("file");
+    std::fs::write(&file, "").unwrap();
+    let errors = outcomes(|_, setup| setup.build(), [&file.join("run"), &out.path().join("none")]);
+    assert!(matches!(&errors[0], Error::Output { .. }), "{}", errors[0]);
+    assert!(matches!(&errors[1], Error::OtherRank { rank: 0, code: 5 }), "{}", errors[1]);
+    assert!(!out.path().join("none").exists());
 }
 
 const QUIET: &str = "checkpoint={every_minutes=60}";

@@ -1,15 +1,18 @@
 //! What commands say. A reader that closes the pipe (`dgmpm run .. | head -1`) neither stops nor breaks a run: results
 //! are files, and the exit code says how it went. Any other reason why nothing can be printed is an error at the end.
 
+mod fault;
 mod json;
 mod manner;
 mod out;
+mod silent;
 
+pub use fault::complain;
 pub use json::{event, result};
 pub use manner::{Manner, manner, speak};
 pub use out::{all_printed, printed, write};
+pub use silent::silence;
 
-use crate::error::Error;
 use crate::format::Row;
 use serde_json::{Map, Value, json};
 
@@ -36,14 +39,6 @@ pub fn warn(text: impl AsRef<str>) {
     match manner() {
         Manner::Json => event("warning", json!({ "text": text.as_ref() })),
         _ => out::complain("warning", manner::YELLOW, text.as_ref()),
-    }
-}
-
-/// Prints the message of an error on standard error.
-pub fn complain(error: &Error) {
-    match manner() {
-        Manner::Json => event("error", manner::of_error(error)),
-        _ => out::complain("error", manner::RED, &error.to_string()),
     }
 }
 

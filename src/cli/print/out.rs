@@ -1,5 +1,6 @@
 //! Where words go: standard output, and standard error for what is wrong, with colours on a terminal alone.
 
+use super::silent::is_silent;
 use crate::error::{Error, Result};
 use crate::format::Row;
 use anstyle::Style;
@@ -11,6 +12,9 @@ static FAULT: Mutex<Option<String>> = Mutex::new(None);
 
 /// Writes a line on standard output.
 pub fn write(text: &str) {
+    if is_silent() {
+        return;
+    }
     let mut out = std::io::stdout().lock();
     printed(writeln!(out, "{text}").and_then(|()| out.flush()));
 }
@@ -37,6 +41,9 @@ pub fn all_printed() -> Result<()> {
 
 /// Writes a line on standard error behind a word, which has a colour on a terminal, unless NO_COLOR says otherwise.
 pub fn complain(word: &str, style: Style, text: &str) {
+    if is_silent() {
+        return;
+    }
     let _ = writeln!(anstream::stderr(), "{style}{word}{style:#}: {text}");
 }
 

@@ -37,6 +37,10 @@ impl Observer for Progress {
         self.display.above(|| say(text));
     }
 
+    fn looks_at_unknowns(&self) -> bool {
+        false
+    }
+
     fn schedule(&mut self) -> &mut Schedule {
         &mut self.schedule
     }
