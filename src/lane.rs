@@ -343,17 +343,11 @@ impl Kernel {
         self.enter(work)
     }
 
-    /// Does the work. The unit tests of other modules do without AVX-512 and counting, which are half of the time to compile them:
-    /// the tests of the whole program take the widest path, and those of `bench` count.
+    /// Does the work. The unit tests of other modules take the portable path alone: each path more is a tenth of the time to compile
+    /// them. The tests of the whole program take the widest path, those of this module all, and those of `bench` count.
     #[cfg(test)]
     pub fn run<W: Work>(self, work: W) -> W::Out {
-        let work = InPlace(&mut ManuallyDrop::new(work));
-        match self {
-            // SAFETY: the processor has the features.
-            #[cfg(target_arch = "x86_64")]
-            Kernel::Avx512 | Kernel::Avx2 if Kernel::Avx2.is_available() => unsafe { avx2::enter_avx2(work) },
-            _ => enter_portable(work),
-        }
+        enter_portable(InPlace(&mut ManuallyDrop::new(work)))
     }
 
     /// Does the work on this path, in unit tests as well.
