@@ -46,8 +46,8 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     all.extend(fast_boundary(scene, mesh, scheme));
     all.extend(thin(mesh, blocks, scene.scheme.degree));
     all.extend(short(scene, *dt));
-    let told = [scene.curl.build().notice, scene.scheme.flux.build().notice];
-    all.extend(told.into_iter().filter(|notice| !notice.is_empty()).map(str::to_owned));
+    let notice = scene.curl.build().notice;
+    all.extend((!notice.is_empty()).then(|| notice.to_owned()));
     if *steps <= 1.0 {
         all.push(format!(
             "the run is one step: it ends {:.3e} s after its start, and a step is {dt:.3e} s; times are in s, moduli in Pa, \
