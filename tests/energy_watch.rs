@@ -44,6 +44,9 @@ fn a_strip_that_makes_energy_is_warned_of_once_and_stopped_with_its_state_kept()
         for words in ["nothing gave to it", "J/m", "%", "step", "t = ", "[watch] energy", "snapshots/"] {
             assert!(said.contains(words), "{words}: {said}");
         }
+        // What may help goes by what the scene has on: another flux and control than the defaults, points on the nodes.
+        let holds = "scheme.flux = \"dual\" or [curl] control = \"rotation\" or ";
+        assert!(said.contains(holds) && said.contains("a finer mesh may hold it"), "{said}");
         let text = std::fs::read_to_string(folder.path().join("summary.json")).unwrap();
         let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
         assert_eq!(summary["status"], "unstable");

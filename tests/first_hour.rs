@@ -260,7 +260,9 @@ fn new_seed_and_preprocess_do_not_write_over_a_file_that_they_read() {
     let folder = folder.path();
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes");
     let (mesh, scene) = ("square_impact.msh", "square_impact.toml");
-    [mesh, scene].iter().for_each(|name| drop(std::fs::copy(from.join(name), folder.join(name)).unwrap()));
+    for name in [mesh, scene] {
+        std::fs::copy(from.join(name), folder.join(name)).unwrap();
+    }
     let bytes = |name: &str| std::fs::read(folder.join(name)).unwrap();
     let before = [mesh, scene].map(bytes);
     // By the same name and by another path to it.

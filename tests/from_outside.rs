@@ -215,7 +215,7 @@ fn register() {
         };
         let about = "from outside";
         LAWS.add(Entry { name: "maxwell", about, parameters: MAXWELL, check: ANY, build: law }).unwrap();
-        let build = fluxes::Flux { make: || Flux::new(LaxFriedrichs), when_lost: |_| None };
+        let build = fluxes::Flux { make: || Flux::new(LaxFriedrichs), when_lost: |_| None, share: 1.0 };
         FLUXES.add(Entry { name: "lax-friedrichs", about, parameters: &[], check: ANY, build }).unwrap();
         const GAP: &[Parameter] = &[Parameter::required("gap", "the gap at the start", "m", Form::Number(FINITE))];
         let build = Condition::of(|of| Arc::new(GapWall { gap: [of.number("gap")] }));

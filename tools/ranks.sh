@@ -11,6 +11,8 @@ if ! has_mpi; then
     exit 0
 fi
 
+# Where several MPIs are installed, that of mpirun: the build would take the one that pkg-config names first.
+export MPICC="${MPICC:-mpicc}"
 # Both packages are named, so that crates get the features that they have in `cargo test`: none is built twice.
 cargo test --release --quiet -p dgmpm -p dgmpm-ranks --test arguments
 cargo build --release -p dgmpm -p dgmpm-ranks --bin dgmpm --bin dgmpm-mpi --example panics

@@ -5,6 +5,7 @@
 
 use dgmpm::Exchange;
 use ferrompi::{Communicator, Request, Scope};
+use std::io::Write;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
@@ -24,6 +25,8 @@ const PAUSE: Duration = Duration::from_millis(2);
 const TURN: Duration = Duration::from_millis(1500);
 /// The last turn.
 const TURNS: u32 = 4;
+/// What starts the ranks needs so long to hand a line on.
+const HEARD: Duration = Duration::from_millis(100);
 /// Between two looks no more than this counts as waiting.
 const BLINK: Duration = Duration::from_millis(100);
 
@@ -44,11 +47,18 @@ impl std::fmt::Debug for Engine {
     }
 }
 
+/// Says a line on standard error, which all ranks share: in one piece, and so that it is through before the job may end.
+fn say(line: &str) {
+    // Nobody may read along.
+    let _ = std::io::stderr().write_all(format!("{line}\n").as_bytes());
+    thread::sleep(HEARD);
+}
+
 /// Ends all ranks of `world` where this process panics, on whatever thread: nobody could unwind the others.
 pub fn end_all_on_panic(world: Communicator) {
     let rank = world.rank();
     std::panic::set_hook(Box::new(move |what| {
-        eprintln!("error: rank {rank}: {what}");
+        say(&format!("error: rank {rank}: {what}"));
         world.abort(PANICKED);
     }));
 }
@@ -109,7 +119,7 @@ impl Engine {
         let Meter { swaps, messages, numbers, gathers, given, waited } = &self.meter;
         let of = |number: &AtomicU64| number.load(Ordering::Relaxed);
         let [swapping, gathering] = [0, 1].map(|k| of(&waited[k]) as f64 / 1e9);
-        eprintln!(
+        say(&format!(
             "rank {}: {} swaps, {} messages of {} numbers, {swapping:.3} s; {} gathers, {} numbers given, {gathering:.3} s",
             self.rank,
             of(swaps),
@@ -117,7 +127,7 @@ impl Engine {
             of(numbers),
             of(gathers),
             of(given)
-        );
+        ));
     }
 
     /// Does something that begins messages, and waits for their end; `patience` of none waits for ever, and looks seldom.
@@ -163,7 +173,7 @@ impl Engine {
 
     /// Says why, and ends all ranks.
     fn end_all(&self, why: &str) -> ! {
-        eprintln!("error: rank {}: {why}", self.rank);
+        say(&format!("error: rank {}: {why}", self.rank));
         self.world.abort(i32::from(LOST))
     }
 

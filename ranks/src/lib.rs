@@ -45,7 +45,7 @@ fn run(engine: &Arc<Engine>, parsed: Arguments) -> ExitCode {
         }
         ExitCode::from(2)
     };
-    if let Some(rank) = engine.first_that_differs(arguments::hash(&std::env::args_os().skip(1).collect::<Vec<_>>())) {
+    if let Some(rank) = engine.first_that_differs(arguments::hash(std::env::args_os().skip(1).collect::<Vec<_>>())) {
         return refuse(&format!("rank {rank} has another command line than rank 0"), "give all ranks the same one");
     }
     if let Some(why) = parsed.fault {

@@ -24,6 +24,8 @@ pub struct WholeFace<'a> {
 
 /// A place of a face that an obstacle holds: v.n <= w.n there, by a force f n, f <= 0, and by friction.
 pub(super) struct Touch {
+    /// Its coordinate along the face, 0..=1.
+    pub s: f64,
     /// Unit normal n, out of the body.
     pub normal: [f64; 2],
     /// l_i at the place, by point of the face.
@@ -114,7 +116,7 @@ impl WholeFace<'_> {
         let deepest = if tip.radius > 0.0 { tip.radius.min(0.5 * length) } else { 0.5 * length };
         let values = self.basis.values(s);
         let holds = gap <= 0.0 && gap > -deepest && tip.is_seen_along(normal);
-        holds.then_some(Touch { normal, values, force: [0.0; 2], depth: -gap })
+        holds.then_some(Touch { s, normal, values, force: [0.0; 2], depth: -gap })
     }
 
     /// The outward normal at s with its own value there made continuous along the boundary: at an end at which this goes on it is the mean of both

@@ -2,6 +2,7 @@
 
 use super::print::say;
 use crate::error::Result;
+use crate::format::count;
 use crate::problem::Export;
 use crate::run::Folder;
 use std::path::PathBuf;
@@ -52,6 +53,6 @@ pub fn run(args: &Args) -> Result<()> {
             Format::Vtkhdf => export.vtkhdf()?,
         }
     }
-    say(format!("{} snapshots exported to {}", export.count(), export.out().display()));
+    say(format!("{} exported to {}", count(export.count(), "snapshot"), export.out().display()));
     Ok(())
 }

@@ -27,6 +27,9 @@ pub(super) const VERTEX: u8 = 1;
 const QUAD: u8 = 9;
 const LAGRANGE_QUADRILATERAL: u8 = 70;
 
+/// What the comment of an export says whose points are not where they were in the initial configuration.
+pub const DEFORMED: &str = "x = X + u, at the time";
+
 /// VTK's number of the cells of a grid of this degree.
 pub(super) fn kind_of_grid(degree: usize) -> u8 {
     if degree <= 1 { QUAD } else { LAGRANGE_QUADRILATERAL }

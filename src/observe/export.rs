@@ -4,6 +4,7 @@ use super::{Field, Solution};
 use crate::cloud::Cloud;
 use crate::io::grid::{self, HighOrderGrid, Kind, PointCloud, lagrange_quad_nodes};
 use crate::io::snapshot::Snapshot;
+use crate::io::vtu;
 use crate::mesh::{Mesh, map};
 use crate::operators::Certificate;
 
@@ -43,7 +44,7 @@ impl Positions {
     pub fn words(self) -> &'static str {
         match self {
             Positions::Initial => "X, in the initial configuration",
-            Positions::Deformed => "x = X + u, at the time",
+            Positions::Deformed => vtu::DEFORMED,
         }
     }
 }

@@ -232,9 +232,10 @@ impl Scene {
     /// dt c / h beyond which the method is unstable with the flux of the scene.
     pub fn step_limit(&self) -> f64 {
         let (n, integration) = (self.scheme.degree, self.integration());
-        let holds = (self.scheme.flux.build().make)().looks() == Looks::Displacement;
+        let flux = self.scheme.flux.build();
+        let holds = (flux.make)().looks() == Looks::Displacement;
         let held = if holds { cfl::share_when_held(&integration, n) } else { 1.0 };
-        held * cfl::limit(&integration, n)
+        held * flux.share * cfl::limit(&integration, n)
     }
 
     /// dt c / h and the end.

@@ -5,7 +5,9 @@ use super::lost::{Case, kept};
 use crate::error::{Error, Result};
 use crate::io::{pending, snapshot};
 use crate::observe;
+use crate::registry::{controls, fluxes};
 use crate::run::{Folder, Report, Stop};
+use crate::scene::Scene;
 use crate::state::State;
 use crate::step::EnergyMade;
 use serde_json::Value;
@@ -48,7 +50,7 @@ impl Ended {
                 let at = format!("at step {}, t = {:.6e} s; {place}", state.step, state.time);
                 ended("interrupted", Error::Interrupted(at))
             }
-            Stop::EnergyMade(made) => ended("unstable", too_much(&made.0, &file)),
+            Stop::EnergyMade(made) => ended("unstable", too_much(&made.0, &problem.scene, &file)),
             Stop::Unstable(lost) => {
                 let case = Case { problem, report, lost: &lost };
                 let (loss, error) = (Some(case.json()), case.error(&kept(&lost, &file)));
@@ -81,8 +83,21 @@ fn resume(folder: &Folder, step: usize) -> String {
     }
 }
 
+/// What may keep the energy of a run, by what it has on.
+fn holds(made: &EnergyMade, scene: &Scene) -> String {
+    let (flux, control) = (fluxes::DEFAULT, controls::DEFAULT);
+    let all = [
+        (scene.scheme.flux.name() != flux).then(|| format!("scheme.flux = \"{flux}\"")),
+        (scene.curl.name() != control).then(|| format!("[curl] control = \"{control}\"")),
+        made.between_nodes.then(|| "points on the Gauss nodes ([cloud] layout = \"gauss\")".to_owned()),
+    ];
+    let mut all: Vec<String> = all.into_iter().flatten().collect();
+    all.push("a finer mesh".to_owned());
+    all.join(" or ")
+}
+
 /// The error of a run that made so much energy that it was stopped.
-fn too_much(made: &EnergyMade, kept: &Result<PathBuf>) -> Error {
+fn too_much(made: &EnergyMade, scene: &Scene, kept: &Result<PathBuf>) -> Error {
     let place = match kept {
         Ok(path) => format!("a state of some steps before is in {}", path.display()),
         Err(why) => format!("the state of some steps before could not be kept: {why}"),
@@ -92,9 +107,9 @@ fn too_much(made: &EnergyMade, kept: &Result<PathBuf>) -> Error {
         time: made.time,
         step: made.step,
         remedy: format!(
-            "{place}; see ledger.csv for when it began; [watch] energy = {:.0e} or \"off\" lets it go on; another [curl] control, \
-             points on the Gauss nodes ([cloud] layout = \"gauss\") or a finer mesh may hold it",
-            10.0 * made.share
+            "{place}; see ledger.csv for when it began; [watch] energy = {:.0e} or \"off\" lets it go on; {} may hold it",
+            10.0 * made.share,
+            holds(made, scene)
         ),
     }
 }

@@ -11,6 +11,8 @@ pub struct Flux {
     /// What may help a run that lost stability with the default flux, and why another flux may be the reason. Its argument
     /// says whether a law of the run has a memory.
     pub when_lost: fn(bool) -> Option<&'static str>,
+    /// Share of the limit of the step that it leaves; 1 for most.
+    pub share: f64,
 }
 
 /// The flux of a scene that names none.
@@ -48,7 +50,7 @@ pub static FLUXES: Table<Flux> = Table::new(&[
         about: "Lax-Friedrichs in velocity and traction, with the jump of the rotation of F, which does no work",
         parameters: &[],
         check: ANY,
-        build: Flux { make: || step::Flux::from(Dual), when_lost: |memory| (!memory).then_some(OTHER) },
+        build: Flux { make: || step::Flux::from(Dual), when_lost: |memory| (!memory).then_some(OTHER), share: 1.0 },
     },
     Entry {
         name: "rusanov",
@@ -61,6 +63,7 @@ pub static FLUXES: Table<Flux> = Table::new(&[
                 true => Some(WITH_MEMORY),
                 false => Some("makes energy in large motions of a nearly incompressible body"),
             },
+            share: 1.0,
         },
     },
     Entry {
@@ -68,14 +71,15 @@ pub static FLUXES: Table<Flux> = Table::new(&[
         about: "linearised Godunov; unstable in compression where the curl of F is not controlled",
         parameters: &[],
         check: ANY,
-        build: Flux { make: || step::Flux::from(Acoustic), when_lost },
+        build: Flux { make: || step::Flux::from(Acoustic), when_lost, share: 1.0 },
     },
+    // Measured by `dgmpm stability`: .82 of the limit of the other fluxes at degree 1, .82 to .75 at 2, for nu .3 to .4, and less beyond.
     Entry {
         name: "acoustic-curl",
-        about: "acoustic with a penalty on the tangential jump of F",
+        about: "acoustic with a penalty on the tangential jump of F, which shortens the step",
         parameters: &[],
         check: ANY,
-        build: Flux { make: || step::Flux::from(AcousticCurl), when_lost },
+        build: Flux { make: || step::Flux::from(AcousticCurl), when_lost, share: 0.6 },
     },
 ]);
 

@@ -22,6 +22,15 @@ const OPTIONS: [(&str, &str); 5] = [
     ("cloud.layout", "--layouts"),
 ];
 
+/// Tables that would hide these keys.
+const TABLES: [(&str, &str); 2] = [
+    ("scheme", "--methods, --degrees, --time-degrees, or one key such as scheme.flux"),
+    ("cloud", "--layouts, or one key such as cloud.per_direction"),
+];
+
+/// Tables that say what is computed and what is looked at: runs that differ in them cannot be compared by an error.
+const FIXED: [&str; 8] = ["title", "time", "exact", "quantity", "output", "regrid", "checkpoint", "watch"];
+
 /// What is compared, as a user names it. An empty list stands for the default.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Request {
@@ -129,10 +138,21 @@ impl Request {
                     "give a key of the scene with its values, such as \"curl.control=lcf|off\"",
                 ));
             };
-            if let Some((_, option)) =
-                OPTIONS.iter().find(|(own, _)| key == *own || key.starts_with(&format!("{own}.")))
-            {
+            let with_option = OPTIONS.iter().find(|(own, _)| key == *own || key.starts_with(&format!("{own}.")));
+            if let Some((_, option)) = with_option.or_else(|| TABLES.iter().find(|(table, _)| key == *table)) {
                 return Err(Error::input(format!("--compare takes no `{key}`"), format!("give {option}")));
+            }
+            let table = key.split('.').next().unwrap_or(key);
+            if FIXED.contains(&table) {
+                let what =
+                    format!("--compare takes no `{key}`: runs that differ in it cannot be compared by their error");
+                return Err(Error::input(what, "make two scenes, and a study of each"));
+            }
+            if all.iter().flatten().any(|set: &String| set.starts_with(&format!("{key}="))) {
+                return Err(Error::input(
+                    format!("--compare names `{key}` twice"),
+                    "give all its values at once, with | between them",
+                ));
             }
             let with = |sets: &Vec<String>, value| [&sets[..], &[format!("{key}={value}")]].concat();
             all = all.iter().flat_map(|sets| values.clone().map(move |value| with(sets, value))).collect();

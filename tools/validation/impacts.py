@@ -116,7 +116,7 @@ ROD = Case(
             ]
         )
     ],
-    Picture("Stress along x after 95 us: the wave on its way back.", "cauchy_stress_11"),
+    Picture("Stress along x after 95 us: the wave of the contact is about to reach the free end.", "cauchy_stress_11"),
     quick=("",),
 )
 
@@ -194,10 +194,10 @@ RING = Case(
         "Cells have straight edges, so the ring is a polygon, and at each of its corners the bending stress along "
         "the free sides turns by 11 degrees (64 cells around: 6). The polynomials of the two cells there cannot "
         "follow, their jump stays, and flux and free sides take energy from it in each step. A straight strip of the"
-        " same thickness, cells and length of wave loses 2 % at degree 2 and .1 % at degree 3 in 10 ms. The remedy "
-        "is cells with curved edges, which the program does not have.",
+        " same thickness, cells and length of wave loses 2 % at degree 2 and .1 % at degree 3 in 10 ms. Cells with "
+        "curved edges would have no such corners; the program does not have them.",
     ),
-    Picture("Stress along x where the ring is most oval (2 x 32 cells).", "cauchy_stress_11", "S2, 2 x 32"),
+    Picture("Stress along x where the ring is most oval (2 x 32 cells; its displacement is too small to see).", "cauchy_stress_11", "S2, 2 x 32"),
     {"S2, 2 x 32": [], "S3, 2 x 32": ["scheme.degree=3"], "S2, 4 x 64": ["mesh.file=ring_fine.msh"]},
 )
 
@@ -280,7 +280,7 @@ DISC_IMPACT = Case(
             1.0,
             EXACT,
             0.02,
-            "contact on faces that close and open takes energy, less on finer cells: 15, 6, 1.2, .3 % on 2 x 2 to 16"
+            "contact on faces that close and open takes energy, less on finer cells: 15, 5, 1.1, .3 % on 2 x 2 to 16"
             " x 16 cells a block",
             lambda runs: energy_left(runs["8 x 8"]),
             ("8 x 8",),

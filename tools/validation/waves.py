@@ -77,7 +77,7 @@ RAYLEIGH = Case(
             ("S3, 8 x 8",),
         ),
     ],
-    Picture("Velocity along y after one period (S3, 8 x 8 cells), on the initial body.", "velocity_2", "S3, 8 x 8"),
+    Picture("Velocity along y after one period (S3, 8 x 8 cells).", "velocity_2", "S3, 8 x 8"),
     {
         f"S{degree}, {cells} x {cells}": [f"scheme.degree={degree}", f"mesh.rectangle.cells=[{cells},{cells}]"]
         for degree in (2, 3)
@@ -133,7 +133,7 @@ DISC = Case(
         ),
     ],
     Picture(
-        "Pressure after a quarter of a period, where the disc is largest (6 x 6 cells a block).",
+        "Pressure in the quarter that is computed, after a quarter of a period, where the disc is largest (6 x 6 cells a block; its displacement is too small to see).",
         "pressure",
         "6 x 6",
         1.25774575e-4,

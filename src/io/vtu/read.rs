@@ -7,12 +7,15 @@
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
+use super::DEFORMED;
 use super::decode::{Coding, Number};
 use crate::io::grid::{Field, Kind};
 use crate::io::xml::{DEPTH, attribute};
 
 /// Elements beyond which a file is refused: a hundred fields in a hundred pieces.
 const ELEMENTS: usize = 20_000;
+/// Bytes at the end of a file in which the comment on where it comes from stands.
+const COMMENT: usize = 2048;
 /// Fields beyond which a file is refused: each is looked for by its name in each piece.
 const FIELDS: usize = 1000;
 
@@ -95,6 +98,12 @@ pub fn points(bytes: &[u8]) -> Result<Found, String> {
     Ok((points, fields))
 }
 
+/// Whether the comment behind the document says that it is an export of the deformed body.
+fn is_deformed(bytes: &[u8]) -> bool {
+    let end = &bytes[bytes.len().saturating_sub(COMMENT)..];
+    end.windows(DEFORMED.len()).any(|words| words == DEFORMED.as_bytes())
+}
+
 impl<'a> Document<'a> {
     /// Reads a document, and of its arrays those of some sections.
     ///
@@ -113,6 +122,11 @@ impl<'a> Document<'a> {
             skipped: false,
         };
         document.walk()?;
+        if is_deformed(bytes) {
+            return Err("its points are where they were at a time, x = X + u, and not in the initial configuration: take the file of the export \
+                        without `_deformed` in its name"
+                .to_owned());
+        }
         match document.arrays.iter().any(|array| array.section == Section::Place) {
             true => Ok(document),
             false => Err("it is not an unstructured grid with points".to_owned()),
