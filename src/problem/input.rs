@@ -36,7 +36,7 @@ pub fn check_folder(
     operators: Option<&Path>,
     folder: &Folder,
 ) -> Result<()> {
-    let text = scene.portable_toml(files.mesh.is_some(), files.cloud.is_some());
+    let text = scene.folder_toml(files.mesh.is_some(), files.cloud.is_some());
     let sources = sources(scene, files, operators, folder);
     let same = |name: &str| match name {
         "scene.toml" => std::fs::read_to_string(folder.scene()).is_ok_and(|there| there == text),
@@ -186,7 +186,7 @@ pub fn write_input(problem: &Problem, files: &Files, folder: &Folder, certificat
     };
     let more = Extras { virtual_points: body.virtual_points.clone(), fields, certificates };
     cloud_file::write_with(&folder.cloud(), &body.cloud, &body.mesh, &more)?;
-    let text = scene.portable_toml(files.mesh.is_some(), files.cloud.is_some());
+    let text = scene.folder_toml(files.mesh.is_some(), files.cloud.is_some());
     pending::write_text(&folder.scene(), &seal::text(&text, seal::TOML))
 }
 

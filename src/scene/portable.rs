@@ -47,6 +47,19 @@ impl Scene {
         document.to_string()
     }
 
+    /// The same with the title of the scene where the file has none: the default is the name of the file, which is another one in the folder
+    /// of a run, so that a run that goes on from there would change its title.
+    pub fn folder_toml(&self, mesh: bool, cloud: bool) -> String {
+        let text = self.portable_toml(mesh, cloud);
+        match text.parse::<DocumentMut>() {
+            Ok(mut document) if !document.contains_key("title") => {
+                document.insert("title", value(&self.title));
+                document.to_string()
+            }
+            _ => text,
+        }
+    }
+
     /// The file of a run folder that has the table of loads of a condition.
     pub(crate) fn stored_loads(number: usize, key: &str) -> String {
         format!("boundary_{number}_{key}.csv")
@@ -135,6 +148,17 @@ end = 1
     fn a_scene_without_files_stays_as_it_is() {
         let scene = parse(SCENE);
         assert_eq!(scene.portable_toml(false, false), scene.to_toml());
+    }
+
+    #[test]
+    fn the_text_for_a_folder_has_the_title_that_the_scene_takes_from_its_file() {
+        let scene = parse(SCENE);
+        let text = scene.folder_toml(false, false);
+        let there = Scene::parse(&text, Path::new("run/scene.toml"), &[]).unwrap();
+        assert_eq!((&there.title[..], &scene.title[..]), ("case", "case"));
+        assert_eq!(there.folder_toml(false, false), text);
+        // Comments and all else stay.
+        assert_eq!(text.replacen("title = \"case\"\n", "", 1), scene.to_toml());
     }
 
     #[test]
