@@ -38,6 +38,8 @@ pub struct State {
     /// The displacement that a grid of this run began with, `[block][component][node]`, whose jumps are not held: they are those of
     /// the projection. Empty on the first grid.
     pub unheld: Vec<F8>,
+    /// The creep of face points ([`crate::riemann::creep`]), `[block][face][point][2]`, m; empty where the flux keeps none.
+    pub creep: Vec<F8>,
     /// By boundary group of the mesh, then by contact pair ([`crate::step::Scheme::receivers`]); empty where nobody asks for it ([`crate::step::Motion::with_forces`]).
     pub received: Vec<Received>,
 }
@@ -54,6 +56,7 @@ impl State {
             internal: vec![],
             boundary: vec![],
             unheld: vec![],
+            creep: vec![],
             received: vec![],
         }
     }

@@ -8,6 +8,10 @@ use crate::riemann::{Trace, star};
 pub struct Free;
 
 impl Boundary for Free {
+    fn gives_back(&self) -> bool {
+        true
+    }
+
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, _: &Moment, _: &mut [f64]) -> [f64; 6] {
         star(velocity(inside, at), [0.0; 2], at.normal)
     }

@@ -95,6 +95,12 @@ pub trait Boundary: Send + Sync {
         None
     }
 
+    /// Whether the face gives back what it creeps ([`crate::riemann::creep`]): v* = v + Y (t* - t), with t* that does not depend on t. Not
+    /// by default.
+    fn gives_back(&self) -> bool {
+        false
+    }
+
     /// The gap to an obstacle at a point X with this memory, below 0 inside of it, m; none where the condition is no obstacle.
     fn gap(&self, _x: [f64; 2], _memory: &[f64]) -> Option<f64> {
         None

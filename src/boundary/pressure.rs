@@ -13,6 +13,10 @@ pub struct Pressure {
 }
 
 impl Boundary for Pressure {
+    fn gives_back(&self) -> bool {
+        true
+    }
+
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, _: &mut [f64]) -> [f64; 6] {
         let p = mean(&self.value, at.x, when);
         let t = times(cofactor(inside.f), at.normal).map(|area| -p * area);

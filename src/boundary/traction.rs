@@ -11,6 +11,10 @@ pub struct Traction {
 }
 
 impl Boundary for Traction {
+    fn gives_back(&self) -> bool {
+        true
+    }
+
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, _: &mut [f64]) -> [f64; 6] {
         let t = [0, 1].map(|i| mean(&self.value[i], at.x, when));
         let dv = [0, 1].map(|i| at.admittance(inside) * (t[i] - inside.t[i]));

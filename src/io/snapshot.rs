@@ -19,6 +19,7 @@ use super::hdf5;
 use super::provenance::Provenance;
 use super::store::{ArrayRef, Format, Store, write_kept};
 use crate::error::{Error, Result};
+use crate::mesh::FACES;
 use crate::state::UNKNOWNS;
 use crate::tensor::AXES;
 
@@ -41,6 +42,8 @@ pub struct Snapshot {
     /// The part of the displacement whose jumps are not held by the flux, of the same shape; empty if all jumps are held
     /// ([`crate::state::State::unheld`]).
     pub unheld: Vec<f64>,
+    /// The creep of face points `[cell][face][point][2]`, in m ([`crate::state::State::creep`]); empty where the flux keeps none.
+    pub creep: Vec<f64>,
     /// Internal variables `[cell][point][variable]`, none for cells of elastic laws.
     pub internal: Vec<f64>,
     /// The memory of boundary conditions, cells in the order of the mesh, faces, points along the face, numbers; none for
@@ -106,11 +109,17 @@ impl Snapshot {
         if self.unheld.is_empty() { 0 } else { 2 * (self.degree + 1).pow(2) }
     }
 
+    /// How many numbers each cell has in [`Snapshot::creep`]; 0 if it is empty.
+    pub fn creep_stride(&self) -> usize {
+        if self.creep.is_empty() { 0 } else { FACES * (self.degree + 1) * AXES }
+    }
+
     /// A hash of the state, of its time and step, to the bit; not of what corrections did in the last step, which not all snapshots have.
     pub fn bits(&self) -> String {
         let mut all = Digest::new();
         all.count(self.step).count(self.degree).reals([self.time].into_iter());
-        for values in [&self.u, &self.displacement, &self.unheld, &self.internal, &self.boundary, &self.received] {
+        let of_grid = [&self.u, &self.displacement, &self.unheld, &self.creep];
+        for values in of_grid.into_iter().chain([&self.internal, &self.boundary, &self.received]) {
             all.reals(values.iter().copied());
         }
         all.finish()
@@ -142,6 +151,10 @@ impl Snapshot {
         let unheld = self.unheld.len();
         if unheld != 0 && unheld != wanted {
             return Some(format!("{unheld} displacements that are not held instead of {wanted} or none"));
+        }
+        let (creep, of_faces) = (self.creep.len(), self.creep_stride() * self.cells());
+        if creep != of_faces {
+            return Some(format!("{creep} numbers of the creep of faces instead of {of_faces} or none"));
         }
         (given != 0 && given != wanted).then(|| format!("{given} displacements instead of {wanted} or none"))
     }
@@ -176,6 +189,9 @@ impl Snapshot {
             ("unheld", vec![unheld, 2, side, side], ArrayRef::F64(&self.unheld)),
             ("internal", vec![self.internal.len()], ArrayRef::F64(&self.internal)),
         ];
+        if !self.creep.is_empty() {
+            arrays.push(("creep", vec![self.cells(), FACES, side, AXES], ArrayRef::F64(&self.creep)));
+        }
         if !self.boundary.is_empty() {
             arrays.push(("boundary", vec![self.boundary.len()], ArrayRef::F64(&self.boundary)));
         }
@@ -218,9 +234,11 @@ impl Snapshot {
         let provenance = Provenance::by(|key| name(key, String::new()));
         // Files of earlier versions have no `unheld`, and those of runs without such a memory no `boundary`.
         let knows = |name: &str| store.names().any(|known| known == name);
+        let knows_creep = knows("creep");
         let known = [knows("unheld"), knows("boundary"), knows("corrected") && knows("rescued"), knows("received")];
         let unheld = if known[0] { store.reals("unheld", &[2, side, side])? } else { vec![] };
         let boundary = if known[1] { store.reals("boundary", &[])? } else { vec![] };
+        let creep = if knows_creep { store.reals("creep", &[FACES, side, AXES])? } else { vec![] };
         let received = if known[3] { store.reals("received", &[3])? } else { vec![] };
         let [corrected, rescued] = match known[2] {
             true => [store.reals("corrected", &[])?, store.reals("rescued", &[])?],
@@ -233,6 +251,7 @@ impl Snapshot {
             corrected,
             rescued,
             unheld,
+            creep,
             boundary,
             received,
             time: store.real("time")?,

@@ -87,6 +87,10 @@ pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
         true => vec![],
         false => scheme.operators.blocks.unpack(&state.unheld, 2 * n),
     };
+    let creep = match state.creep.is_empty() {
+        true => vec![],
+        false => scheme.operators.blocks.unpack(&state.creep, scheme.creep_of_block()),
+    };
     let (internal, boundary) = (scheme.internal_of(state), scheme.boundary_memory_of(state));
     let received = state.received.iter().flat_map(|group| [group.impulse[0], group.impulse[1], group.work]).collect();
     let (time, step, degree, made_on) = (state.time, state.step, scheme.operators.degree, Fingerprint::of(scheme));
@@ -97,6 +101,7 @@ pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
         u,
         displacement,
         unheld,
+        creep,
         internal,
         boundary,
         received,

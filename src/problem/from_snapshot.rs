@@ -34,9 +34,10 @@ fn unpacked(snapshot: &Snapshot, scheme: &Scheme, components: usize) -> State {
     let blocks = &scheme.operators.blocks;
     let state = State::pack(blocks, scheme.operators.nodes(), components, &snapshot.unknowns(components));
     let unheld = blocks.pack(&snapshot.unheld, snapshot.unheld_stride(), |_| 0.0);
+    let creep = blocks.pack(&snapshot.creep, snapshot.creep_stride(), |_| 0.0);
     let received = snapshot.received.as_chunks::<3>().0.iter();
     let received = received.map(|&[one, two, work]| Received { impulse: [one, two], work }).collect();
-    let mut state = State { time: snapshot.time, step: snapshot.step, unheld, received, ..state };
+    let mut state = State { time: snapshot.time, step: snapshot.step, unheld, creep, received, ..state };
     scheme.set_internal(&mut state, &snapshot.internal);
     scheme.set_boundary_memory(&mut state, &snapshot.boundary);
     state

@@ -236,6 +236,7 @@ impl Problem {
         regrid::curl_free(&after, state.components, &transfer.same, &mut transfer.u);
         let new = State::pack(&after.operators.blocks, n, state.components, &transfer.u);
         let mut new = State { time: state.time, step: state.step, ..new }.holding(state, &transfer.same, n);
+        new.creep = after.creep_from(scheme, state, &transfer.same);
         let internal = self.internal_on(body.grid(), (&after, &new), &transfer.same, &placed)?;
         after.set_internal(&mut new, &internal);
         let boundary = self.boundary_memory_on(&body.mesh, &after);

@@ -140,6 +140,12 @@ impl Riemann for Dual {
         flux
     }
 
+    #[inline(always)]
+    fn admittance<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, medium: &Medium<L>) -> L {
+        let c = minus.c[0].max(plus.c[0]);
+        L::splat(0.5) * Self::share(Self::sum(minus, plus), medium) / (medium.density * c)
+    }
+
     /// In jumps alone.
     #[inline(always)]
     fn lifted<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>, scale: L) -> [L; 6] {

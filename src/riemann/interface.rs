@@ -15,15 +15,27 @@ pub fn interface<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], density:
     let normal = current_normal(minus.f, plus.f, n);
     let own = Impedance::new(minus.c, density[0], normal);
     let other = Impedance::new(plus.c, density[1], normal);
-    let both = [
-        density[0].mul_add(minus.c[0], density[1] * plus.c[0]),
-        density[0].mul_add(minus.c[1], density[1] * plus.c[1]),
-    ];
-    let sum = Impedance::new(both, L::splat(1.0), normal);
+    let sum = sum([minus, plus], normal, density);
     // Relative to v^-, so that uniform motion gives exactly v^-.
     let dv = [plus.v[0] - minus.v[0], plus.v[1] - minus.v[1]];
     let drive = other.times(dv);
     let step = sum.solve([drive[0] + (plus.t[0] - minus.t[0]), drive[1] + (plus.t[1] - minus.t[1])]);
     let dt = own.times(step);
     star([minus.v[0] + step[0], minus.v[1] + step[1]], [minus.t[0] + dt[0], minus.t[1] + dt[1]], n)
+}
+
+/// Z^- + Z^+ on the current normal n.
+#[inline(always)]
+fn sum<L: Lane>([minus, plus]: [&Trace<L>; 2], n: [L; 2], density: [L; 2]) -> Impedance<L> {
+    let both = [
+        density[0].mul_add(minus.c[0], density[1] * plus.c[0]),
+        density[0].mul_add(minus.c[1], density[1] * plus.c[1]),
+    ];
+    Impedance::new(both, L::splat(1.0), n)
+}
+
+/// Z^- + Z^+, whose inverse is Y of v* = .. + Y `[t]` between two laws.
+pub fn summed_impedance<L: Lane>(sides: [&Trace<L>; 2], n: [L; 2], density: [L; 2]) -> Impedance<L> {
+    let [minus, plus] = sides;
+    sum(sides, current_normal(minus.f, plus.f, n), density)
 }

@@ -3,13 +3,14 @@
 //! A new flux is one file with a type that implements [`Riemann`] and its entry in the registry of scenes.
 
 mod acoustic;
+pub mod creep;
 mod dual;
 mod interface;
 mod rusanov;
 
 pub use acoustic::{Acoustic, AcousticCurl};
 pub use dual::Dual;
-pub use interface::interface;
+pub use interface::{interface, summed_impedance};
 pub use rusanov::Rusanov;
 
 use crate::lane::Lane;
@@ -86,6 +87,12 @@ pub trait Riemann: Copy + std::fmt::Debug + Send + Sync + 'static {
     /// Flux*.N in the order of U: [F11, F12, F21, F22, p1, p2].
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6];
 
+    /// Y of v* = mean v + Y `[t]`, m^2 s/kg, where the creep of its faces has a spring ([`creep`]): a flux that looks at the displacement.
+    #[inline(always)]
+    fn admittance<L: Lane>(&self, _minus: &Trace<L>, _plus: &Trace<L>, _medium: &Medium<L>) -> L {
+        L::zero()
+    }
+
     /// scale (Flux*.N - own flux of the F rows), the own flux being -v^- (x) N: what is lifted (14) where the rows of F
     /// stand in strong form. Without a jump it is 0 there, exactly.
     #[inline(always)]
@@ -103,16 +110,16 @@ pub trait Riemann: Copy + std::fmt::Debug + Send + Sync + 'static {
     }
 }
 
-/// Interior penalty of displacement: t* gets K `[u]`, K = [`HOLD`] / l / (1/(rho0 c_p^2)^- + 1/(rho0 c_p^2)^+) with the length l of the
-/// face; here -l K `[u]`, what is lifted.
+/// Interior penalty of displacement: t* gets K `[u]`, K = [`HOLD`] M / (2 l) with M = rho0 c_p^2 at F = 1 (`modulus`, Pa; between two
+/// laws [`creep::in_series`]) and the length l of the face; here -l K `[u]`, what is lifted.
 ///
 /// The jump of v alone is held by a force that its rate makes, so that under a load that stays cells part for good. This
 /// force is that of a spring: with K/2 `[u]`^2 in the energy of the face its power cancels, for every law, since du/dt = v; the
 /// energy law of a flux stands as it was. Source: the symmetric interior penalty method (Arnold, SIAM J. Numer. Anal. 19, 1982).
-/// Which traces of u are meant: [`crate::operators::Line::held`]. The `moduli` rho0 c_p^2 are those of both sides over `unit`, Pa.
+/// Which traces of u are meant: [`crate::operators::Line::held`].
 #[inline(always)]
-pub fn hold<L: Lane>(gap: [L; 2], moduli: [L; 2], unit: f64) -> [L; 2] {
-    let stiffness = L::splat(-HOLD * unit) * (moduli[0] * moduli[1]) / (moduli[0] + moduli[1]);
+pub fn hold<L: Lane>(gap: [L; 2], modulus: f64) -> [L; 2] {
+    let stiffness = L::splat(-0.5 * HOLD * modulus);
     [stiffness * gap[0], stiffness * gap[1]]
 }
 

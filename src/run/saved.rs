@@ -83,8 +83,8 @@ fn restored_phases(from: &mut Saved) -> Result<Phases> {
 }
 
 fn save_totals(totals: &Totals, to: &mut Words) {
-    let Totals { kinetic, strain, momentum, deformation, min_j, max_curl, .. } = totals;
-    to.reals(&[*kinetic, *strain, momentum[0], momentum[1], *min_j, *max_curl]).reals(deformation);
+    let Totals { kinetic, strain, in_faces, momentum, deformation, min_j, max_curl, .. } = totals;
+    to.reals(&[*kinetic, *strain, *in_faces, momentum[0], momentum[1], *min_j, *max_curl]).reals(deformation);
     for known in [totals.dissipated, totals.angular_momentum, totals.max_drift] {
         to.flag(known.is_some()).real(known.unwrap_or(0.0));
     }
@@ -92,7 +92,7 @@ fn save_totals(totals: &Totals, to: &mut Words) {
 
 fn restored_totals(from: &mut Saved) -> Result<Totals> {
     from.count()?;
-    let [kinetic, strain, one, two, min_j, max_curl] = from.array()?;
+    let [kinetic, strain, in_faces, one, two, min_j, max_curl] = from.array()?;
     from.count()?;
     let (deformation, mut known) = (from.array()?, [None; 3]);
     for known in &mut known {
@@ -101,7 +101,18 @@ fn restored_totals(from: &mut Saved) -> Result<Totals> {
     }
     let [dissipated, angular_momentum, max_drift] = known;
     let momentum = [one, two];
-    Ok(Totals { kinetic, strain, dissipated, momentum, angular_momentum, deformation, min_j, max_curl, max_drift })
+    Ok(Totals {
+        kinetic,
+        strain,
+        in_faces,
+        dissipated,
+        momentum,
+        angular_momentum,
+        deformation,
+        min_j,
+        max_curl,
+        max_drift,
+    })
 }
 
 fn save_balance(balance: &Balance, to: &mut Words) {

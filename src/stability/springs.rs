@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::mesh::FACES;
 use crate::operators::Neighbour;
 use crate::operators::sides::Across;
-use crate::riemann::hold;
+use crate::riemann::{creep, hold};
 use crate::tensor::AXES;
 use faer::traits::ext::ComplexFieldExt;
 use faer::{Mat, Side, c64};
@@ -161,12 +161,11 @@ impl<'a> Faces<'a> {
             return None;
         };
         let (there, other) = (operators.blocks.cells[across.face / FACES][across.lane], across.face % FACES);
-        let normal = operators.geometry.blocks[block].lane(lane).normal(face);
+        let modulus = creep::in_series([cell, there].map(|cell| self.modulus(cell)));
         let (mut own, mut beyond) = (vec![], vec![]);
         for point in 0..operators.line.m {
             let opposite = Self::opposite(&across, point, operators.line.m);
-            let moduli = [self.modulus(cell, face, point, normal), self.modulus(there, other, opposite, normal)];
-            let [stiffness, _] = hold([-1.0, 0.0], moduli, 1.0);
+            let [stiffness, _] = hold([-1.0, 0.0], modulus);
             let factor = (operators.line.basis.weights[point] * stiffness).sqrt() * self.problem.h;
             own.push(self.at_nodes(&operators.line.held, face, point, factor));
             beyond.push(self.at_nodes(&operators.line.held, other, opposite, factor));
@@ -187,16 +186,11 @@ impl<'a> Faces<'a> {
         out
     }
 
-    /// rho0 c_p^2 of a cell at a point of a face, Pa.
-    fn modulus(&self, cell: usize, face: usize, point: usize, normal: [f64; 2]) -> f64 {
-        let (scheme, stride) = (&self.problem.scheme, self.problem.per_cell());
-        let n = scheme.operators.nodes();
-        let ends = self.at_nodes(&scheme.operators.line.ends, face, point, 1.0);
-        let f = std::array::from_fn(|k| {
-            ends.iter().zip(&self.base[cell * stride + k * n..]).map(|(end, f)| end * f).sum::<f64>()
-        });
+    /// rho0 c_p^2 of the law of a cell at F = 1, Pa.
+    fn modulus(&self, cell: usize) -> f64 {
+        let scheme = &self.problem.scheme;
         let law = &scheme.laws[scheme.operators.blocks.material[scheme.operators.blocks.slot[cell].0]];
-        law.density() * law.speeds(f, normal)[0].powi(2)
+        law.density() * law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0].powi(2)
     }
 
     /// Where the block of a cell in H stands: the offset of the row unit from that of the cell, and the place of the cell in its unit.

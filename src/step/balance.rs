@@ -32,7 +32,7 @@ use crate::lane::{F8, Lanes, load_array};
 use crate::riemann::tangent;
 use crate::state::UNKNOWNS;
 use crate::sum::exact_sum;
-use crate::tensor::{DEFORMATION, dot, times};
+use crate::tensor::{AXES, DEFORMATION, dot, times};
 
 /// The balance of energy since the start of a run, in J per metre of thickness.
 ///
@@ -115,6 +115,8 @@ pub(super) struct FacePower<'a> {
     pub plus: &'a [F8],
     /// Flux*.
     pub flux: &'a [F8; UNKNOWNS],
+    /// k R a, what the spring of the face pulls with, Pa: the power of that is stored.
+    pub pull: &'a [F8; AXES],
 }
 
 impl FacePower<'_> {
@@ -125,12 +127,13 @@ impl FacePower<'_> {
         let x = load_array::<L, UNKNOWNS>(self.flux);
         let g = [x[0], x[1], x[2], x[3]];
         let (v, a) = (times(g, normal), times(g, tangent(normal)));
+        let pull = load_array::<L, AXES>(self.pull);
         let half = L::splat(0.5);
         let mut power = L::zero();
         for i in 0..2 {
             let star_v = -v[i] - half * (m[DEFORMATION + i] + p[DEFORMATION + i]);
             let star_t = -x[DEFORMATION + i] - half * (m[UNKNOWNS + i] + p[UNKNOWNS + i]);
-            power = star_v.mul_add(p[UNKNOWNS + i] - m[UNKNOWNS + i], power);
+            power = star_v.mul_add(p[UNKNOWNS + i] - m[UNKNOWNS + i] - pull[i], power);
             power = star_t.mul_add(p[DEFORMATION + i] - m[DEFORMATION + i], power);
             power = power - a[i] * (p[W - 2 + i] - m[W - 2 + i]);
         }

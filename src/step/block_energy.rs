@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 /// sum_a m_a W(F_a), for a law with memory sum_p w_p (W + D)(F_p, h_p) with w_p = int chi_p dX, and the kinetic energy
 /// sum_a m_a |p_a|^2 / (2 rho0); J/m, a lane a cell. D is what the law has dissipated, with one more
-/// return from h_p to F_p where there is one to do.
+/// return from h_p to F_p where there is one to do. With what the springs of the faces store.
 pub(super) struct BlockEnergy<'a> {
     pub scheme: &'a Scheme,
     pub block: usize,
@@ -23,7 +23,9 @@ pub(super) struct BlockEnergy<'a> {
     pub u: &'a [F8],
     /// Its internal variables.
     pub internal: &'a [F8],
-    /// The time since these were those of `u`, s.
+    /// The creep of its faces; empty where they have no springs.
+    pub creep: &'a [F8],
+    /// The time since the internal variables were those of `u`, s.
     pub dt: f64,
     /// The thread's arrays.
     pub scratch: &'a mut Scratch,
@@ -37,7 +39,10 @@ impl BlockEnergy<'_> {
         let masses = &mut self.scratch.nodes.masses;
         with_nodes!(line.m, M => { self.scheme.kernel.run(Masses::<'_, M> { line, metric, masses }); });
         let law = &self.scheme.laws[self.scheme.operators.blocks.material[self.block]];
-        law.block().stored_energy(self.scheme.kernel, StoredEnergy(self))
+        let in_faces = self.scheme.stored_by_creep(self.block, self.creep);
+        let mut out = law.block().stored_energy(self.scheme.kernel, StoredEnergy(self));
+        out.0.iter_mut().zip(in_faces.0).for_each(|(out, stored)| *out += stored);
+        out
     }
 }
 
@@ -48,7 +53,7 @@ impl LawWork for StoredEnergy<'_> {
     type Out = F8;
     #[inline(always)]
     fn run<L: Lanes, M: Material>(self, law: M) -> F8 {
-        let BlockEnergy { scheme, block, u, internal, dt, scratch } = self.0;
+        let BlockEnergy { scheme, block, u, internal, dt, scratch, .. } = self.0;
         let mut out = F8::ZERO;
         let moving = kinetic_energy::<L>(law.density(), &scratch.nodes.masses, u);
         let strain = if count::<M>() == 0 {
@@ -99,7 +104,8 @@ impl Scheme {
             *out = with_scratch(&memory.scratch, |scratch| {
                 let u = &state.u[stride * block..stride * (block + 1)];
                 let internal = self.histories.of(&state.internal, block);
-                BlockEnergy { scheme: self, block, u, internal, dt: 0.0, scratch }.find()
+                let creep = self.creep_of(state, block);
+                BlockEnergy { scheme: self, block, u, internal, creep, dt: 0.0, scratch }.find()
             });
         });
         exact_sum(cells.iter().zip(&blocks.count).map(|(energy, &count)| energy.0[..count].iter().sum()))

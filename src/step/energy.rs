@@ -18,6 +18,8 @@ pub struct Totals {
     pub kinetic: f64,
     /// int W dX, J/m: all that is stored.
     pub strain: f64,
+    /// What the springs against the creep of faces store ([`crate::riemann::creep`]), J/m: part of the energy.
+    pub in_faces: f64,
     /// What laws have dissipated since their material was virgin, J/m; only where one has memory.
     pub dissipated: Option<f64>,
     /// int p dX, kg/s (per metre of thickness).
@@ -76,6 +78,7 @@ impl Totals {
     const EMPTY: Totals = Totals {
         kinetic: 0.0,
         strain: 0.0,
+        in_faces: 0.0,
         dissipated: None,
         momentum: [0.0; 2],
         angular_momentum: None,
@@ -96,9 +99,9 @@ impl Totals {
         }
     }
 
-    /// Kinetic and strain energy, J/m.
+    /// Kinetic and strain energy, and that of the springs in faces, J/m.
     pub fn energy(&self) -> f64 {
-        self.kinetic + self.strain
+        self.kinetic + self.strain + self.in_faces
     }
 
     /// [`Totals::energy`] and what laws have dissipated: what the balance of a step is about, J/m.
@@ -109,6 +112,7 @@ impl Totals {
     fn add(&mut self, other: &Totals) {
         self.kinetic += other.kinetic;
         self.strain += other.strain;
+        self.in_faces += other.in_faces;
         self.dissipated = self.dissipated.zip(other.dissipated).map(|(a, b)| a + b);
         self.momentum.iter_mut().zip(other.momentum).for_each(|(a, b)| *a += b);
         self.angular_momentum = self.angular_momentum.zip(other.angular_momentum).map(|(a, b)| a + b);
@@ -128,6 +132,7 @@ impl Totals {
         Totals {
             kinetic: sum(&|part| part.kinetic),
             strain: sum(&|part| part.strain),
+            in_faces: sum(&|part| part.in_faces),
             dissipated: known(self.dissipated, &|part| part.dissipated),
             momentum: std::array::from_fn(|k| sum(&|part| part.momentum[k])),
             angular_momentum: known(self.angular_momentum, &|part| part.angular_momentum),
@@ -160,9 +165,11 @@ impl Scheme {
             .map(|block| {
                 let mut sum = Totals::empty(state);
                 let points = self.deformation_at_points(state, block);
+                let in_faces = self.stored_by_creep(block, self.creep_of(state, block));
                 for lane in 0..self.operators.blocks.count[block] {
                     sum.add(&self.totals_of(state, block, lane));
                     sum.add(&self.stored_at_points(state, block, lane, &points));
+                    sum.in_faces += in_faces.0[lane];
                 }
                 sum
             })
@@ -181,6 +188,7 @@ impl Scheme {
             sum.add(&Totals {
                 kinetic: mass * (p1 * p1 + p2 * p2) / (2.0 * law.density()),
                 strain: if memory { 0.0 } else { mass * law.energy(f) },
+                in_faces: 0.0,
                 dissipated: sum.dissipated.map(|_| 0.0),
                 momentum: [mass * p1, mass * p2],
                 angular_momentum: self.position(state, block, lane, a).map(|x| mass * (x[0] * p2 - x[1] * p1)),

@@ -4,6 +4,7 @@
 use super::balance::BlockBalance;
 use super::block::Block;
 use super::block_energy::BlockEnergy;
+use super::creep::Creep;
 use super::lift::Lift;
 use super::meetings::Meetings;
 use super::outside::{ExternalWork, FaceForces, Torques};
@@ -49,6 +50,8 @@ pub(super) struct Finish<'a> {
     pub balance: Option<&'a mut BlockBalance>,
     /// The memory of the conditions at it.
     pub memory: &'a mut [f64],
+    /// The creep of its faces; none where they have no springs.
+    pub creep: Option<Creep<'a>>,
     /// Where faces meet in the step; none where no condition pairs any.
     pub meetings: Option<&'a Meetings>,
     /// The thread's arrays.
@@ -91,7 +94,8 @@ impl Finish<'_> {
         let (external, balance) = (self.external.as_deref_mut(), self.balance.as_deref_mut());
         let forces = self.forces.as_deref_mut();
         let Scratch { nodes, phases, .. } = &mut *self.scratch;
-        let meter = flux::Meter { external, forces, balance, memory: &mut *self.memory, phases };
+        let creep = self.creep.as_mut().map(|Creep { start, now }| Creep { start, now });
+        let meter = flux::Meter { external, forces, balance, memory: &mut *self.memory, creep, phases };
         block.lifted_fluxes(&self.traces, self.meetings, nodes, meter);
         if let Some(torques) = self.torques.as_deref_mut() {
             block.book_torque(self.state, &nodes.lift, torques);
@@ -151,7 +155,8 @@ impl Finish<'_> {
         let (true, Some(balance)) = (built::BALANCE, self.balance.as_deref_mut()) else { return };
         let (Block { scheme, number: block, .. }, dt) = (self.block, self.block.stage.dt);
         let (internal, start) = (self.block.internal(self.state), self.scratch.phases.start());
-        book(balance, BlockEnergy { scheme, block, u, internal, dt, scratch: &mut *self.scratch }.find());
+        let creep = self.creep.as_ref().map_or(&[][..], |creep| &*creep.now);
+        book(balance, BlockEnergy { scheme, block, u, internal, creep, dt, scratch: &mut *self.scratch }.find());
         self.scratch.phases.book_part(Part::CellBalance, start);
     }
 }

@@ -1,7 +1,8 @@
 //! The interface flux of a block: chosen once a block, by one dynamic call behind which all is compiled for that flux.
 
 use super::block_work::WithFlux;
-use super::flux::{FaceBalance, Faces};
+use super::face_balance::FaceBalance;
+use super::flux::Faces;
 use crate::lane::Kernel;
 use crate::riemann::{Looks, Riemann};
 use crate::state::UNKNOWNS;

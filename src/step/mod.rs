@@ -19,15 +19,18 @@ mod boundary_memory;
 pub mod cfl;
 mod corrected_stages;
 mod correction;
+mod creep;
 mod curl;
 mod curl_core;
 mod dense;
 mod displacement;
 mod energy;
+mod face_balance;
 mod finish;
 mod flux;
 mod flux_of_blocks;
 mod health;
+mod held;
 pub mod history;
 mod law;
 
@@ -58,6 +61,7 @@ mod survey;
 pub mod sweeps;
 mod tile_memory;
 mod tiles;
+mod trace;
 mod volume;
 mod whole_faces;
 mod worst;
@@ -307,12 +311,6 @@ impl Scheme {
             Method::Ader { .. } => 1.0,
             Method::RungeKutta(tableau) => tableau.b[stage],
         }
-    }
-
-    /// From the first to the last Gauss node of a line, over its length.
-    fn span(&self) -> f64 {
-        let nodes = &self.operators.line.basis.nodes;
-        nodes[nodes.len() - 1] - nodes[0]
     }
 }
 

@@ -39,6 +39,7 @@ impl Motion {
             // A state that knows of no conditions: theirs is the memory of a start.
             scheme.set_boundary_memory(&mut state, &[]);
         }
+        scheme.make_room_for_creep(&mut state);
         let work = Work::new(scheme, &state);
         Self { state, work, survey: Survey::default(), other: Survey::default() }
     }

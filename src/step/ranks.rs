@@ -222,6 +222,9 @@ impl Ranks {
             let first = |block: usize| if block < blocks { scheme.boundary_memory.range(block).start } else { end };
             self.gather(&mut state.boundary, first);
         }
+        if !state.creep.is_empty() {
+            self.gather(&mut state.creep, |block| block * scheme.creep_of_block());
+        }
         self.gather(speed, |block| block);
         self.whole = true;
     }

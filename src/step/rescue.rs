@@ -178,6 +178,7 @@ impl Scheme {
         start.internal.copy_from_slice(&state.internal);
         start.boundary.clone_from(&state.boundary);
         start.unheld.clone_from(&state.unheld);
+        start.creep.clone_from(&state.creep);
         let stride = state.components * self.operators.nodes();
         let mut loss = ExactSum::default();
         for (block, &lanes) in memory.blocks.flat.iter().enumerate().filter(|(_, lanes)| **lanes != 0) {

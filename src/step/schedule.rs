@@ -3,6 +3,7 @@
 use super::balance::BlockBalance;
 use super::begin::Begin;
 use super::block::Block;
+use super::creep::Creep;
 use super::finish::{Finish, New};
 use super::meetings::Meetings;
 use super::outside::{self, ExternalWork, FaceForces, Torques};
@@ -122,6 +123,9 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
         let balance = out.balance.as_mut().and_then(|balance| balance.get_mut(at));
         let memory = (scheme.boundary_memory.range(number), scheme.boundary_memory.range(out.first).start);
         let memory = &mut out.memory[memory.0.start - memory.1..memory.0.end - memory.1];
+        let count = scheme.creep_of_block();
+        let after = out.creep.get_mut(count * at..count * (at + 1));
+        let creep = after.map(|now| Creep { start: scheme.creep_of(state, number), now });
         (step.finish)(Finish {
             block: Block { scheme, stage, number },
             state,
@@ -135,6 +139,7 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
             torques,
             balance,
             memory,
+            creep,
             meetings,
             scratch,
         });
@@ -171,6 +176,8 @@ struct Out<'a> {
     balance: Option<&'a mut [BlockBalance]>,
     /// The memory of boundary conditions.
     memory: &'a mut [f64],
+    /// The creep of faces; empty where they have no springs.
+    creep: &'a mut [F8],
 }
 
 impl<'a> Out<'a> {
@@ -185,20 +192,25 @@ impl<'a> Out<'a> {
 
     /// The same for a shorter time.
     fn again(&mut self) -> Out<'_> {
-        let Self { first, u, internal, speed, worst, external, forces, torques, balance, memory } = self;
+        let Self { first, u, internal, speed, worst, external, forces, torques, balance, memory, creep } = self;
         let (forces, torques, balance) = (forces.as_deref_mut(), torques.as_deref_mut(), balance.as_deref_mut());
-        Out { first: *first, u, internal, speed, worst, external, forces, torques, balance, memory }
+        Out { first: *first, u, internal, speed, worst, external, forces, torques, balance, memory, creep }
     }
 
     /// Those from a block on.
     fn from(self, block: usize, (scheme, state): (&Scheme, &State), outside: &[u32]) -> Self {
         let (history, memory) = (scheme.histories.range(block).start, scheme.boundary_memory.range(block).start);
         let stride = state.components * scheme.operators.nodes();
-        self.split(block, stride, [history, outside[block] as usize, memory]).1
+        self.split(block, [stride, scheme.creep_of_block()], [history, outside[block] as usize, memory]).1
     }
 
-    /// Those of the first `blocks`, with so many internal variables, entries of `external` and numbers of `memory`, and the rest.
-    fn split(self, blocks: usize, stride: usize, [internal, external, memory]: [usize; 3]) -> (Self, Self) {
+    /// Those of the first `blocks`, with so many unknowns and numbers of the creep a block, and with so many internal variables, entries of `external` and numbers of `memory`, and the rest.
+    fn split(
+        self,
+        blocks: usize,
+        [stride, creep]: [usize; 2],
+        [internal, external, memory]: [usize; 3],
+    ) -> (Self, Self) {
         let (first, second) = (self.first, self.first + blocks);
         let (u, u2) = self.u.split_at_mut(blocks * stride);
         let (internal, internal2) = self.internal.split_at_mut(internal);
@@ -209,10 +221,11 @@ impl<'a> Out<'a> {
         let (external, external2) = self.external.split_at_mut(external);
         let (balance, balance2) = self.balance.map(|balance| balance.split_at_mut(blocks)).unzip();
         let (memory, memory2) = self.memory.split_at_mut(memory);
-        let left = Out { first, u, internal, speed, worst, external, forces, torques, balance, memory };
-        let (first, u, internal, speed, memory) = (second, u2, internal2, speed2, memory2);
+        let (creep, creep2) = self.creep.split_at_mut((blocks * creep).min(self.creep.len()));
+        let left = Out { first, u, internal, speed, worst, external, forces, torques, balance, memory, creep };
+        let (first, u, internal, speed, memory, creep) = (second, u2, internal2, speed2, memory2, creep2);
         let (worst, external, forces, torques, balance) = (worst2, external2, forces2, torques2, balance2);
-        (left, Out { first, u, internal, speed, worst, external, forces, torques, balance, memory })
+        (left, Out { first, u, internal, speed, worst, external, forces, torques, balance, memory, creep })
     }
 }
 
@@ -256,7 +269,7 @@ impl<B: Fn(Begin) + Copy + Send + Sync, F: Fn(Finish) + Copy + Send + Sync> Step
                 let memory = memory(middle) - memory(start);
                 let numbers = [first(middle) - first(start), entries(middle) - entries(start), memory];
                 let stride = self.state.components * self.scheme.operators.nodes();
-                let (one, two) = out.split(middle - start, stride, numbers);
+                let (one, two) = out.split(middle - start, [stride, self.scheme.creep_of_block()], numbers);
                 rayon::join(|| self.run(left, shown, one), || self.run(right, shown2, two));
             }
             _ => {}
@@ -286,7 +299,8 @@ impl Scheme {
         let memory = &mut next.boundary[..];
         memory.copy_from_slice(&state.boundary);
         let numbers = self.block_traces(balance.is_some());
-        let mut out = Out { first: 0, u, internal, speed, worst, external, forces, torques, balance, memory };
+        let creep = &mut next.creep[..];
+        let mut out = Out { first: 0, u, internal, speed, worst, external, forces, torques, balance, memory, creep };
         let count = tiles.len();
         let own = ranks.as_ref().map_or(0..count, |ranks| ranks.tiles.clone());
         if let Some(first) = tiles[own.clone()].first().filter(|_| own.start > 0) {

@@ -49,6 +49,9 @@ pub struct Scheme {
     pub method: Method,
     /// Interface flux between cells of one law.
     pub flux: Flux,
+    /// rho0 c_p^2 of the laws at F = 1, Pa, where the flux has springs in the faces ([`crate::riemann::hold`],
+    /// [`crate::riemann::creep`]); empty where it has none.
+    pub(super) moduli: Vec<f64>,
     /// Condition of each boundary group of the mesh.
     pub boundaries: Vec<Arc<dyn Boundary>>,
     /// The faces that interact across gaps; none where no condition pairs any.
@@ -118,6 +121,7 @@ impl Scheme {
         let (histories, boundary_memory) =
             (Histories::new(&operators, &laws), BoundaryMemory::new(&operators, &boundaries));
         let sees_faces = boundaries.iter().any(|boundary| boundary.sees_faces());
+        let moduli = super::creep::moduli(&laws, &flux);
         let (sources, corrections, curl, kernel) = (vec![], vec![], None, Kernel::widest());
         Ok(Self {
             operators,
@@ -126,6 +130,7 @@ impl Scheme {
             boundary_memory,
             method,
             flux,
+            moduli,
             boundaries,
             contacts: None,
             sources,

@@ -43,6 +43,8 @@ pub struct Arrays {
     pub lift: Vec<F8>,
     /// Lifted by the traces of what is held: [face][face point][2].
     pub held: Vec<F8>,
+    /// The creep of the faces before a stage, [face][point][2], where they have springs.
+    pub creep: Vec<F8>,
     /// The mass matrix, by node, where it is wanted.
     pub masses: Vec<F8>,
     /// Rows of F in the weighted inner product, and their coefficients, for the curl-free projection.
@@ -65,6 +67,7 @@ impl Arrays {
             displacement: zeros(AXES * n),
             lift: zeros(FACES * UNKNOWNS * m),
             held: zeros(FACES * AXES * m),
+            creep: zeros(FACES * AXES * m),
             masses: zeros(n),
             weighted: zeros(DEFORMATION * n),
             coefficients: zeros(DEFORMATION * n),

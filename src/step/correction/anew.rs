@@ -111,6 +111,9 @@ impl Scheme {
         let stride = state.components * self.operators.nodes();
         let u = &state.u[stride * block..stride * (block + 1)];
         let internal = self.histories.of(&state.internal, block);
-        with_scratch(scratch, |scratch| BlockEnergy { scheme: self, block, u, internal, dt: 0.0, scratch }.find())
+        let creep = self.creep_of(state, block);
+        with_scratch(scratch, |scratch| {
+            BlockEnergy { scheme: self, block, u, internal, creep, dt: 0.0, scratch }.find()
+        })
     }
 }

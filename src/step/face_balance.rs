@@ -1,0 +1,85 @@
+//! What faces between cells add to the balance of energy.
+
+use super::across::Other;
+use super::balance::{BlockBalance, FacePower};
+use super::block::Block;
+use super::block_work::FluxWork;
+use super::creep::{Pull, Pulling};
+use super::flux::Sides;
+use super::trace::{trace_of, turn, turned, with_width};
+use super::volume::width;
+use crate::lane::{F8, Lanes, load_array, store_array};
+use crate::operators::Neighbour;
+use crate::riemann::{Looks, Riemann};
+use crate::state::UNKNOWNS;
+use crate::tensor::AXES;
+
+/// What a face between cells adds to the balance of the block. The fluxes are found once more: without the balance they never come to
+/// memory.
+pub(super) struct FaceBalance<'a, 'b> {
+    pub block: Block<'a>,
+    pub sides: Sides<'a>,
+    /// What pulls at the faces; none where they have no springs.
+    pub pull: Option<Pull<'a>>,
+    pub balance: &'b mut BlockBalance,
+}
+
+impl FluxWork for FaceBalance<'_, '_> {
+    #[inline(always)]
+    fn run<L: Lanes, R: Riemann>(self, riemann: &R) {
+        with_width!(R::LOOKS, true, W => self.with::<L, _, W>(riemann));
+    }
+}
+
+impl FaceBalance<'_, '_> {
+    #[inline(always)]
+    fn with<L: Lanes, R: Riemann, const W: usize>(self, riemann: &R) {
+        let Self { block, sides, pull, balance } = self;
+        let (scheme, metric, face) = (block.scheme, block.metric().load::<L>(), sides.face);
+        let neighbours = &scheme.operators.blocks.neighbours[block.number][face];
+        let factor = block.factor();
+        let normal = metric.normal(face);
+        let mut medium = block.medium().splat::<L>();
+        if R::LOOKS == Looks::Displacement {
+            medium.turn = turn::<L, _, W>(sides.own.as_chunks::<W>().0, sides.other, block.turning());
+        }
+        let weights = &scheme.operators.line.basis.weights[..scheme.operators.line.m];
+        for (point, (own, weight)) in sides.own.as_chunks::<W>().0.iter().zip(weights).enumerate() {
+            let beyond = turned::<L, R, W>(sides.other.load::<L, W>(point));
+            let minus = trace_of::<L, R, W>(&load_array::<L, W>(own));
+            let plus = trace_of::<L, R, W>(&beyond);
+            let (mut flux, mut there, mut scale) = ([F8::ZERO; UNKNOWNS], [F8::ZERO; W], F8::ZERO);
+            store_array(riemann.flux(&minus, &plus, normal, &medium), &mut flux);
+            store_array(beyond, &mut there);
+            let mut pulled = [F8::ZERO; AXES];
+            if let Some(pull) = pull {
+                let at = face * scheme.operators.line.m + point;
+                store_array(
+                    pull.meter(at, riemann, [&minus, &plus], (normal, metric.length(face)), &medium, &mut flux),
+                    &mut pulled,
+                );
+            }
+            (metric.length(face) * L::splat(*weight * factor)).store(&mut scale);
+            for (lane, neighbour) in neighbours.iter().enumerate() {
+                match neighbour {
+                    // What a condition loses is booked with its work; it has no jumps, and no flux that means anything.
+                    Neighbour::Boundary(_) => {
+                        (0..W).for_each(|k| there[k].0[lane] = own[k].0[lane]);
+                        flux.iter_mut().chain(&mut pulled).for_each(|number| number.0[lane] = 0.0);
+                    }
+                    Neighbour::Interface(_, material) => {
+                        // Springs in series in place of those of the own law.
+                        let ratio = block.modulus_between(*material) / scheme.moduli[block.material()];
+                        pulled.iter_mut().for_each(|pull| pull.0[lane] *= ratio);
+                        let pulling = pull.map(Pulling::Still);
+                        let between = block.flux_of_lane([face, point, lane], own, sides.other, &mut [], pulling);
+                        between.iter().for_each(|f| (0..UNKNOWNS).for_each(|k| flux[k].0[lane] = f[k]));
+                    }
+                    Neighbour::Cell(_) | Neighbour::Padding => {}
+                }
+            }
+            let power = FacePower { minus: own, plus: &there, flux: &flux, pull: &pulled };
+            power.jumps::<L, W>(&scale, normal, &mut balance.flux);
+        }
+    }
+}
