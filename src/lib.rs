@@ -140,8 +140,8 @@ pub use exchange::Exchange;
 
 // What a crate may add: laws, fluxes, conditions, sources, corrections, observers.
 pub use boundary::{
-    Absorbing, Boundary, Data, FacePoint, Foundation, Free, Moment, Obstacle, Pressure, Shape, TimeNode, Traction,
-    Unilateral, Velocity, Wall, WholeFace,
+    Absorbing, Boundary, Data, FacePoint, Foundation, Free, GivesBack, Moment, Obstacle, Pressure, Shape, TimeNode,
+    Traction, Unilateral, Velocity, Wall, WholeFace,
 };
 pub use lane::{F8, Kernel, LANES, Lane, Lanes};
 pub use limiter::{Beside, Cell, CellLimiter, Limiter, Modes, MomentLimiter, Sensor, VertexLimiter};

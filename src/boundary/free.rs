@@ -1,6 +1,6 @@
 //! Free surface.
 
-use super::{Boundary, FacePoint, Moment};
+use super::{Boundary, FacePoint, GivesBack, Moment};
 use crate::riemann::{Trace, star};
 
 /// t* = 0, v* = v - Z^-1 t: the outgoing characteristic is kept. (With theta/z_p for Z^-1 a square that spins loses three times as much.)
@@ -8,8 +8,8 @@ use crate::riemann::{Trace, star};
 pub struct Free;
 
 impl Boundary for Free {
-    fn gives_back(&self) -> bool {
-        true
+    fn gives_back(&self) -> GivesBack {
+        GivesBack::All
     }
 
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, _: &Moment, _: &mut [f64]) -> [f64; 6] {

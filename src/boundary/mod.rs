@@ -81,6 +81,17 @@ pub struct Moment<'a> {
     pub dt: f64,
 }
 
+/// How a boundary face gives back what it creeps ([`crate::riemann::creep`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GivesBack {
+    /// Not at all.
+    Nothing,
+    /// v* = v + Y (t* - t), and t* does not depend on t: the spring pulls in any direction.
+    All,
+    /// The same along the face, and nothing across it: the plane of symmetry, where half of a spring is the image's.
+    Along,
+}
+
 /// A boundary condition.
 pub trait Boundary: Send + Sync {
     /// The numbers that the condition keeps at each point of its faces, at the start of a run: a gap, a slip. None by default.
@@ -95,10 +106,9 @@ pub trait Boundary: Send + Sync {
         None
     }
 
-    /// Whether the face gives back what it creeps ([`crate::riemann::creep`]): v* = v + Y (t* - t), with t* that does not depend on t. Not
-    /// by default.
-    fn gives_back(&self) -> bool {
-        false
+    /// How its faces give back what they creep; not at all by default.
+    fn gives_back(&self) -> GivesBack {
+        GivesBack::Nothing
     }
 
     /// The gap to an obstacle at a point X with this memory, below 0 inside of it, m; none where the condition is no obstacle.

@@ -1,6 +1,6 @@
 //! Pressure that follows the surface.
 
-use super::{Boundary, Data, FacePoint, Moment, mean};
+use super::{Boundary, Data, FacePoint, GivesBack, Moment, mean};
 use crate::riemann::{Trace, star};
 use crate::tensor::{cofactor, times};
 
@@ -13,8 +13,8 @@ pub struct Pressure {
 }
 
 impl Boundary for Pressure {
-    fn gives_back(&self) -> bool {
-        true
+    fn gives_back(&self) -> GivesBack {
+        GivesBack::All
     }
 
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, _: &mut [f64]) -> [f64; 6] {

@@ -1,6 +1,6 @@
 //! Prescribed traction per area of the initial configuration.
 
-use super::{Boundary, Data, FacePoint, Moment, mean};
+use super::{Boundary, Data, FacePoint, GivesBack, Moment, mean};
 use crate::riemann::{Trace, star};
 
 /// t* = t_d(X, t), v* = v + theta (t_d - t) / z_p. (Z^-1 for theta/z_p lets a bracket under load creep by 1.5 % more.)
@@ -11,8 +11,8 @@ pub struct Traction {
 }
 
 impl Boundary for Traction {
-    fn gives_back(&self) -> bool {
-        true
+    fn gives_back(&self) -> GivesBack {
+        GivesBack::All
     }
 
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, _: &mut [f64]) -> [f64; 6] {

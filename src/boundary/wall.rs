@@ -1,7 +1,7 @@
 //! Frictionless bilateral wall, moving or not; at rest it is the plane of symmetry.
 
 use super::surface::Surface;
-use super::{Boundary, Data, FacePoint, Moment, mean};
+use super::{Boundary, Data, FacePoint, GivesBack, Moment, mean};
 use crate::riemann::{Dual, Trace, star};
 use crate::tensor::dot;
 
@@ -21,6 +21,10 @@ const IMAGE: f64 = 2.0;
 impl Boundary for Wall {
     fn mirror(&self, x: [f64; 2], time: f64) -> Option<f64> {
         Some(self.speed.as_ref().map_or(0.0, |speed| speed(x, time)))
+    }
+
+    fn gives_back(&self) -> GivesBack {
+        GivesBack::Along
     }
 
     fn flux(&self, inside: &Trace<f64>, at: &FacePoint, when: &Moment, _: &mut [f64]) -> [f64; 6] {

@@ -216,6 +216,7 @@ impl Report {
             ("peak_memory_mib", json!(peak_memory_mib())),
             ("kinetic_energy", json!(last.kinetic)),
             ("strain_energy", json!(last.strain)),
+            ("face_energy", json!(last.in_faces)),
             ("total_energy_ratio", json!(self.energy_ratio())),
             ("momentum", json!(last.momentum)),
             ("work", self.work_json()),

@@ -31,6 +31,9 @@ impl Report {
             row("strain energy", format!("{:.6e} -> {:.6e} J/m", first.strain, last.strain)),
             row("total energy", format!("{:.6} of start and work", self.energy_ratio())),
         ];
+        if first.in_faces.max(last.in_faces) > 0.0 {
+            rows.insert(2, row("  in faces", format!("{:.6e} -> {:.6e} J/m", first.in_faces, last.in_faces)));
+        }
         if let Some((first, last)) = first.dissipated.zip(last.dissipated) {
             rows.push(row("dissipated by laws", format!("{first:.6e} -> {last:.6e} J/m")));
         }

@@ -93,13 +93,20 @@ impl<'a> Assembler<'a> {
         let mut units = Vec::new();
         for (cell, &(block, _)) in blocks.slot.iter().enumerate() {
             let impedance = problem.scheme.laws[blocks.material[block]].density() * problem.speeds[cell];
+            // The creep is a displacement, too.
             units.extend((0..problem.per_cell()).map(|k| match k / nodes {
                 ..DEFORMATION => 1.0,
                 DEFORMATION..UNKNOWNS => impedance,
                 _ => problem.h,
             }));
         }
-        Self { problem, units, base: problem.state.unpack(blocks, nodes) }
+        let at_rest = problem.state.unpack(blocks, nodes);
+        let mut base = Vec::with_capacity(units.len());
+        for cell in at_rest.chunks(problem.at_nodes()) {
+            base.extend_from_slice(cell);
+            base.resize(base.len() + problem.per_cell() - problem.at_nodes(), 0.0);
+        }
+        Self { problem, units, base }
     }
 
     fn memory(&self) -> Memory {
@@ -107,11 +114,26 @@ impl<'a> Assembler<'a> {
         Memory { state: state.clone(), work: Work::new(scheme, state), survey: Survey::default() }
     }
 
-    /// Block-wise index and lane of unknown `at`.
-    fn slot(&self, at: usize) -> (usize, usize) {
-        let stride = self.problem.per_cell();
-        let (block, lane) = self.problem.scheme.operators.blocks.slot[at / stride];
-        (block * stride + at % stride, lane)
+    /// Gives unknown `at` of a state a value.
+    fn set(&self, state: &mut State, at: usize, value: f64) {
+        let (stride, nodes) = (self.problem.per_cell(), self.problem.at_nodes());
+        let (cell, k) = (at / stride, at % stride);
+        let (block, lane) = self.problem.scheme.operators.blocks.slot[cell];
+        match k.checked_sub(nodes) {
+            None => state.u[block * nodes + k].0[lane] = value,
+            Some(k) => self.problem.set_creep(state, cell, k, value),
+        }
+    }
+
+    /// Unknown `at` of a state.
+    fn get(&self, state: &State, at: usize) -> f64 {
+        let (stride, nodes) = (self.problem.per_cell(), self.problem.at_nodes());
+        let (cell, k) = (at / stride, at % stride);
+        let (block, lane) = self.problem.scheme.operators.blocks.slot[cell];
+        match k.checked_sub(nodes) {
+            None => state.u[block * nodes + k].0[lane],
+            Some(k) => state.creep[block * (stride - nodes) + k].0[lane],
+        }
     }
 
     /// Adds `factor` step(U + amount direction) / D to `out`.
@@ -126,19 +148,16 @@ impl<'a> Assembler<'a> {
     ) {
         let scheme = &self.problem.scheme;
         for &(at, value) in direction {
-            let (slot, lane) = self.slot(at);
-            m.state.u[slot].0[lane] = self.base[at] + amount * value * self.units[at];
+            self.set(&mut m.state, at, self.base[at] + amount * value * self.units[at]);
         }
         // A state that the law does not hold shows in numbers that are not finite.
         let _ = scheme.survey(&m.state, &m.work, &mut m.survey);
         scheme.step(&m.state, dt, &m.survey, &mut m.work);
         for (at, out) in out.iter_mut().enumerate() {
-            let (slot, lane) = self.slot(at);
-            *out += factor * m.work.next.u[slot].0[lane] / self.units[at];
+            *out += factor * self.get(&m.work.next, at) / self.units[at];
         }
         for &(at, _) in direction {
-            let (slot, lane) = self.slot(at);
-            m.state.u[slot].0[lane] = self.base[at];
+            self.set(&mut m.state, at, self.base[at]);
         }
     }
 

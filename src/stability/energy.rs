@@ -49,7 +49,7 @@ impl Energy {
             let law = &scheme.laws[scheme.operators.blocks.material[scheme.operators.blocks.slot[cell].0]];
             let (count, modulus) = (law.history_len(), law.density() * problem.speeds[cell].powi(2));
             for a in 0..nodes {
-                let f = std::array::from_fn(|k| u[cell * problem.per_cell() + k * nodes + a]);
+                let f = std::array::from_fn(|k| u[cell * problem.at_nodes() + k * nodes + a]);
                 let mut known = law.virgin();
                 if count > 0 {
                     let xi = places.xi[places.first[cell]..places.first[cell + 1]].iter().copied();

@@ -6,6 +6,7 @@
 mod angles;
 mod assemble;
 mod cases;
+mod creep;
 mod energy;
 mod measure;
 mod norms;

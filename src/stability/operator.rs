@@ -2,7 +2,7 @@
 //!
 //! Matrices act on (y, z). y = M^(1/2) x has F and p, x in units 1 of F and rho0 c_p of p, M = w_a J_a rho0 c_p^2: the norm |y|^2 is
 //! int rho0 c_p^2 (|H|^2 + |v|^2 / c_p^2) dX with H the perturbation of F. Where the flux holds the jumps of the displacement, z has
-//! these jumps ([`Springs`]): |z|^2 / 2 is the energy of their springs.
+//! these jumps ([`Springs`]), and, where faces keep their creep, that: |z|^2 / 2 is the energy of their springs.
 
 use super::Problem;
 use super::assemble::{Assembler, Differences, Operator};
@@ -19,8 +19,8 @@ pub struct Rate {
     pub noise: f64,
     /// M^(1/2) of F and p of a unit, or of the body.
     roots: Vec<f64>,
-    /// Blocks by the offset of the unit that they act on; of a body one. F and p of all cells come first, in y, then u1 and u2,
-    /// in units h.
+    /// Blocks by the offset of the unit that they act on; of a body one. F and p of all cells come first, in y, then the creep, in z, then u1
+    /// and u2, in units h.
     blocks: Vec<([i32; 2], Mat<f64>)>,
     /// Where jumps of the displacement are held.
     springs: Option<Springs>,
@@ -40,7 +40,7 @@ impl Rate {
             let what = "a step gives numbers that are not finite";
             return Err(Error::input(what, "give a smaller step, or another state"));
         }
-        let order = order(problem, cells.len());
+        let order = order(problem, &cells);
         let roots_all = roots(problem);
         let own = unknowns(problem, &cells);
         let mut blocks = Vec::new();
@@ -132,17 +132,21 @@ fn unknowns(problem: &Problem, cells: &[usize]) -> Vec<usize> {
     cells.iter().flat_map(|cell| cell * stride..(cell + 1) * stride).collect()
 }
 
-/// The order of the unknowns of `count` cells: F and p as they stand, then u1 and u2, `[component][cell][node]`.
-fn order(problem: &Problem, count: usize) -> Vec<usize> {
-    let (n, stride) = (problem.scheme.operators.nodes(), problem.per_cell());
+/// The order of the unknowns of some cells, as they stand in the list of all of these cells: F and p, the creep of the faces that are theirs,
+/// then u1 and u2, `[component][cell][node]`.
+fn order(problem: &Problem, cells: &[usize]) -> Vec<usize> {
+    let (n, stride, count) = (problem.scheme.operators.nodes(), problem.per_cell(), cells.len());
     let mut out: Vec<usize> = (0..count).flat_map(|cell| cell * stride..cell * stride + UNKNOWNS * n).collect();
+    for (at, &cell) in cells.iter().enumerate() {
+        out.extend(problem.own_creep(cell).map(|k| at * stride + problem.at_nodes() + k));
+    }
     for k in UNKNOWNS..problem.state.components {
         out.extend((0..count).flat_map(|cell| cell * stride + k * n..cell * stride + (k + 1) * n));
     }
     out
 }
 
-/// M^(1/2) of all unknowns; 1 for u.
+/// M^(1/2) of all unknowns; 1 for u, and (k w l)^(1/2) h for the creep.
 fn roots(problem: &Problem) -> Vec<f64> {
     let operators = &problem.scheme.operators;
     let mut out = Vec::new();
@@ -150,7 +154,10 @@ fn roots(problem: &Problem) -> Vec<f64> {
         let modulus = problem.scheme.laws[operators.blocks.material[block]].density() * problem.speeds[cell].powi(2);
         let masses: Vec<f64> = operators.geometry.masses(&operators.line, block, lane).collect();
         (0..UNKNOWNS).for_each(|_| out.extend(masses.iter().map(|mass| (mass * modulus).sqrt())));
-        out.resize((cell + 1) * problem.per_cell(), 1.0);
+        out.resize(cell * problem.per_cell() + problem.at_nodes(), 1.0);
+        out.extend(
+            (problem.at_nodes()..problem.per_cell()).map(|k| problem.root_of_creep(cell, k - problem.at_nodes())),
+        );
     }
     out
 }

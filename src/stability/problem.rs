@@ -253,9 +253,15 @@ impl Problem {
         })
     }
 
-    /// Unknowns of a cell: F, p, and u where its jumps are held.
-    pub fn per_cell(&self) -> usize {
+    /// Unknowns of a cell at its nodes: F, p, and u where its jumps are held.
+    pub fn at_nodes(&self) -> usize {
         self.state.components * self.scheme.operators.nodes()
+    }
+
+    /// Unknowns of a cell: those at its nodes, then the creep of its faces where they have springs.
+    pub fn per_cell(&self) -> usize {
+        let creep = if self.state.creep.is_empty() { 0 } else { self.scheme.creep_of_block() };
+        self.at_nodes() + creep
     }
 
     /// The cells whose unknowns are perturbed: one unit in the middle of a patch, or all.

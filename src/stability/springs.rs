@@ -43,7 +43,7 @@ impl Springs {
         if !problem.state.has_displacement() {
             return None;
         }
-        let faces = Faces::new(problem);
+        let faces = Faces { problem };
         let mut springs = Self { blocks: vec![] };
         for (row, &cell) in cells.iter().enumerate() {
             for face in 0..FACES {
@@ -141,16 +141,9 @@ struct Sides {
 /// The faces of a problem.
 struct Faces<'a> {
     problem: &'a Problem,
-    /// F and the other unknowns, `[cell][component][node]`.
-    base: Vec<f64>,
 }
 
-impl<'a> Faces<'a> {
-    fn new(problem: &'a Problem) -> Self {
-        let (blocks, nodes) = (&problem.scheme.operators.blocks, problem.scheme.operators.nodes());
-        Self { problem, base: problem.state.unpack(blocks, nodes) }
-    }
-
+impl Faces<'_> {
     /// The cell beyond a face between cells, and the factors of both; none at the boundary of the body.
     fn springs(&self, cell: usize, face: usize) -> Option<(usize, Sides)> {
         let operators = &self.problem.scheme.operators;

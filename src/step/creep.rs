@@ -6,12 +6,13 @@
 
 use super::block::Block;
 use super::{Flux, Law, Scheme};
+use crate::boundary::GivesBack;
 use crate::lane::{F8, LANES, Lanes, load_array, store_array};
 use crate::mesh::FACES;
 use crate::operators::Neighbour;
 use crate::riemann::{Looks, Medium, Riemann, Trace, creep, summed_impedance};
 use crate::state::{State, UNKNOWNS};
-use crate::tensor::{AXES, DEFORMATION, times};
+use crate::tensor::{AXES, DEFORMATION, dot, times};
 
 /// The creep of the faces of a block in a stage, [face][point][2], m.
 pub(super) struct Creep<'a> {
@@ -42,8 +43,12 @@ pub(super) struct Springs<'a> {
 }
 
 impl<'a> Springs<'a> {
-    /// Those of a block; `memory` has room for a.
-    pub fn new(block: &Block, creep: Creep<'a>, memory: &'a mut [F8]) -> Self {
+    /// Those of a block, if it has any; `memory` has room for a.
+    pub fn new(block: &Block, creep: Creep<'a>, memory: &'a mut [F8]) -> Option<Self> {
+        let modulus = block.scheme.spring_between([block.material(); 2]);
+        if modulus == 0.0 {
+            return None;
+        }
         let Creep { start, now } = creep;
         let before = if block.stage.number == 0 {
             start
@@ -51,8 +56,7 @@ impl<'a> Springs<'a> {
             memory.copy_from_slice(now);
             memory
         };
-        let pull = Pull { start, modulus: block.scheme.spring() * block.scheme.moduli[block.material()] };
-        Self { pull, before, now, dt: block.factor() }
+        Some(Self { pull: Pull { start, modulus }, before, now, dt: block.factor() })
     }
 
     /// The same for a shorter time.
@@ -176,22 +180,35 @@ impl Block<'_> {
         self.scheme.modulus_between([self.material(), material])
     }
 
-    /// The flux of a condition that gives back its creep, which sees t + k R a for the traction of the inside.
+    /// beta M = k l of a face to another law, Pa.
+    pub(super) fn spring_between(&self, material: usize) -> f64 {
+        self.scheme.spring_between([self.material(), material])
+    }
+
+    /// The flux of a condition that gives back what its face creeps: it sees the traction of the inside with the pull of the spring.
     pub(super) fn pulled_at_boundary(
         &self,
         [face, point, lane]: [usize; 3],
+        how: GivesBack,
         inside: &Trace<f64>,
         springs: Pulling,
         flux: impl FnOnce(&Trace<f64>) -> [f64; UNKNOWNS],
     ) -> [f64; UNKNOWNS] {
         let (metric, at) = (self.metric().lane(lane), face * self.scheme.operators.line.m + point);
         let (normal, stiffness) = (metric.normal(face), springs.pull().modulus / metric.length(face));
-        let rotation = creep::rotation(inside.f);
-        let pull = springs.pull().of_lane(at, lane, rotation, stiffness);
+        // The mean of F and its image turns nowhere, and the pull is shared with the image.
+        let along = how == GivesBack::Along;
+        let (rotation, share) = if along { ([1.0, 0.0], 0.5) } else { (creep::rotation(inside.f), 1.0) };
+        let pull = springs.pull().of_lane(at, lane, rotation, share * stiffness);
         let seen = Trace { t: [0, 1].map(|i| inside.t[i] + pull[i]), ..*inside };
         let flux = flux(&seen);
         let back = times([flux[0], flux[1], flux[2], flux[3]], normal);
-        springs.follow(at, lane, rotation, [0, 1].map(|i| -back[i] - inside.v[i]));
+        let mut velocity = [0, 1].map(|i| -back[i] - inside.v[i]);
+        if along {
+            let across = dot(velocity, normal);
+            velocity = [0, 1].map(|i| velocity[i] - across * normal[i]);
+        }
+        springs.follow(at, lane, rotation, velocity);
         flux
     }
 
@@ -206,7 +223,10 @@ impl Block<'_> {
     ) {
         let (metric, at) = (self.metric().lane(lane), face * self.scheme.operators.line.m + point);
         let (normal, scheme) = (metric.normal(face), self.scheme);
-        let stiffness = scheme.spring() * self.modulus_between(material) / metric.length(face);
+        let stiffness = self.spring_between(material) / metric.length(face);
+        if stiffness == 0.0 {
+            return;
+        }
         let rotation = creep::rotation(std::array::from_fn(|k| minus.f[k] + plus.f[k]));
         let pull = springs.pull().of_lane(at, lane, rotation, stiffness);
         let density = [self.material(), material].map(|law| scheme.laws[law].density());
@@ -240,14 +260,15 @@ pub(super) fn moduli(laws: &[Law], flux: &Flux) -> Vec<f64> {
 }
 
 impl Scheme {
-    /// beta of the springs against creep, see [`creep::spring`].
-    fn spring(&self) -> f64 {
-        creep::spring(self.operators.degree)
-    }
-
     /// Whether faces keep their creep.
     fn keeps_creep(&self) -> bool {
-        !self.moduli.is_empty() && self.spring() > 0.0
+        (0..self.moduli.len()).any(|law| self.spring_between([law; 2]) > 0.0)
+    }
+
+    /// beta M = k l of a face between two laws, Pa; 0 where one of them has memory, see [`creep::spring`].
+    pub(crate) fn spring_between(&self, laws: [usize; 2]) -> f64 {
+        let flows = laws.iter().any(|law| self.laws[*law].has_memory());
+        if flows { 0.0 } else { creep::spring(self.operators.degree) * self.modulus_between(laws) }
     }
 
     /// M of a face between two laws, Pa.
@@ -312,7 +333,7 @@ impl Scheme {
         }
         let (m, blocks) = (self.operators.line.m, &self.operators.blocks);
         let law = blocks.material[block];
-        let own = self.spring() * self.moduli[law];
+        let own = self.spring_between([law; 2]);
         let faces = creep.as_chunks::<AXES>().0.chunks_exact(m).zip(&blocks.neighbours[block]);
         for (points, neighbours) in faces {
             let mut sum = F8::ZERO;
@@ -323,9 +344,12 @@ impl Scheme {
             }
             for (lane, neighbour) in neighbours.iter().enumerate() {
                 let modulus = match neighbour {
-                    Neighbour::Boundary(_) => own,
+                    Neighbour::Boundary(group) => match self.boundaries[*group].gives_back() {
+                        GivesBack::Along => 0.5 * own,
+                        _ => own,
+                    },
                     Neighbour::Cell(_) => 0.5 * own,
-                    Neighbour::Interface(_, there) => 0.5 * self.spring() * self.modulus_between([law, *there]),
+                    Neighbour::Interface(_, there) => 0.5 * self.spring_between([law, *there]),
                     Neighbour::Padding => 0.0,
                 };
                 out.0[lane] += 0.5 * modulus * sum.0[lane];

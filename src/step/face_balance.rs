@@ -68,9 +68,11 @@ impl FaceBalance<'_, '_> {
                         flux.iter_mut().chain(&mut pulled).for_each(|number| number.0[lane] = 0.0);
                     }
                     Neighbour::Interface(_, material) => {
-                        // Springs in series in place of those of the own law.
-                        let ratio = block.modulus_between(*material) / scheme.moduli[block.material()];
-                        pulled.iter_mut().for_each(|pull| pull.0[lane] *= ratio);
+                        if pull.is_some() {
+                            // Springs in series in place of those of the own law.
+                            let ratio = block.spring_between(*material) / block.spring_between(block.material());
+                            pulled.iter_mut().for_each(|pull| pull.0[lane] *= ratio);
+                        }
                         let pulling = pull.map(Pulling::Still);
                         let between = block.flux_of_lane([face, point, lane], own, sides.other, &mut [], pulling);
                         between.iter().for_each(|f| (0..UNKNOWNS).for_each(|k| flux[k].0[lane] = f[k]));

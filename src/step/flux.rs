@@ -12,7 +12,7 @@ use super::outside::{ExternalWork, FaceForces};
 use super::phase::{Part, Ticks};
 use super::trace::{gap, trace_of, turn, turned, with_width};
 use super::volume::{Arrays, width};
-use crate::boundary::{FacePoint, Moment};
+use crate::boundary::{FacePoint, GivesBack, Moment};
 use crate::built;
 use crate::lane::{F8, LANES, Lanes, load_array, store_array};
 use crate::mesh::{FACES, map};
@@ -148,7 +148,7 @@ impl Block<'_> {
         let own = traces.faces(FACES * self.number, FACES, length);
         let (metric, medium) = (self.metric(), self.medium());
         let creep = meter.creep.take();
-        let mut springs = creep.map(|creep| Springs::new(self, creep, &mut nodes.creep));
+        let mut springs = creep.and_then(|creep| Springs::new(self, creep, &mut nodes.creep));
         let (lift, held, pull) = (&mut nodes.lift[..], &mut nodes.held[..], springs.as_ref().map(|own| own.pull));
         let work = springs.as_mut().map(Springs::again);
         flux.faces(
@@ -211,7 +211,7 @@ impl Block<'_> {
             for lane in 0..LANES {
                 let memory = &mut *meter.memory;
                 let neighbour = &self.scheme.operators.blocks.neighbours[self.number][face][lane];
-                if let (Some(springs), Neighbour::Boundary(_)) = (&mut springs, neighbour) {
+                if let (Some(springs), Neighbour::Boundary(_) | Neighbour::Interface(..)) = (&mut springs, neighbour) {
                     springs.keep(line.m * face + point, lane);
                 }
                 let met = sides.met.and_then(|met| self.flux_of_meeting(met, [face, point, lane], own, memory));
@@ -284,9 +284,9 @@ impl Block<'_> {
                 let when = Moment { times: self.stage.times, dt: self.factor() };
                 let condition = &self.scheme.boundaries[group];
                 let mut flux = |inside: &Trace<f64>| condition.flux(inside, &at, &when, memory);
-                Some(match springs.filter(|_| condition.gives_back()) {
-                    Some(springs) => self.pulled_at_boundary([face, point, lane], &minus, springs, flux),
-                    None => flux(&minus),
+                Some(match (condition.gives_back(), springs) {
+                    (GivesBack::Nothing, _) | (_, None) => flux(&minus),
+                    (how, Some(springs)) => self.pulled_at_boundary([face, point, lane], how, &minus, springs, flux),
                 })
             }
             Neighbour::Interface(_, material) => {

@@ -1,0 +1,66 @@
+//! The creep of faces among the unknowns: both cells of a face keep it, and one of them counts it.
+
+use super::Problem;
+use crate::boundary::GivesBack;
+use crate::mesh::FACES;
+use crate::operators::Neighbour;
+use crate::operators::sides::Across;
+use crate::state::State;
+use crate::tensor::AXES;
+
+impl Problem {
+    /// The cell beyond a face between cells, and where it lies there.
+    fn beyond(&self, cell: usize, face: usize) -> Option<Across> {
+        let blocks = &self.scheme.operators.blocks;
+        let (block, lane) = blocks.slot[cell];
+        match blocks.neighbours[block][face][lane] {
+            Neighbour::Cell(across) | Neighbour::Interface(across, _) => Some(across),
+            Neighbour::Boundary(_) | Neighbour::Padding => None,
+        }
+    }
+
+    /// Numbers of the creep that a cell counts, `[face][point][2]`: at the boundary its own, between cells those of faces with odd
+    /// numbers, which in a patch are the right and the upper ones of all cells, and of two odd or even ones those of the first.
+    pub(super) fn own_creep(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
+        let of_face = if self.state.creep.is_empty() { 0 } else { self.scheme.creep_of_block() / FACES };
+        let is_own = move |face: &usize| {
+            let Some(across) = self.beyond(cell, *face) else { return true };
+            let blocks = &self.scheme.operators.blocks;
+            let (there, other) = (blocks.cells[across.face / FACES][across.lane], across.face % FACES);
+            if face % 2 == other % 2 { (cell, *face) < (there, other) } else { face % 2 == 1 }
+        };
+        (0..FACES).filter(is_own).flat_map(move |face| face * of_face..(face + 1) * of_face)
+    }
+
+    /// Gives number k of the creep of a cell a value, on both sides of its face.
+    pub(super) fn set_creep(&self, state: &mut State, cell: usize, k: usize, value: f64) {
+        let (blocks, count) = (&self.scheme.operators.blocks, self.scheme.creep_of_block());
+        let (block, lane) = blocks.slot[cell];
+        state.creep[block * count + k].0[lane] = value;
+        let (m, of_face) = (self.scheme.operators.line.m, count / FACES);
+        let (face, point, axis) = (k / of_face, k % of_face / AXES, k % AXES);
+        if let Some(across) = self.beyond(cell, face) {
+            let point = if across.flip { m - 1 - point } else { point };
+            let there = across.face / FACES * count + across.face % FACES * of_face + AXES * point + axis;
+            state.creep[there].0[across.lane] = value;
+        }
+    }
+
+    /// (k w l)^(1/2) h of a number of the creep of a cell, whose energy in units h is half of its square.
+    pub(super) fn root_of_creep(&self, cell: usize, k: usize) -> f64 {
+        let (scheme, blocks) = (&self.scheme, &self.scheme.operators.blocks);
+        let of_face = scheme.creep_of_block() / FACES;
+        let (block, lane) = blocks.slot[cell];
+        let own = blocks.material[block];
+        let there = match blocks.neighbours[block][k / of_face][lane] {
+            Neighbour::Interface(_, law) => law,
+            _ => own,
+        };
+        let share = match blocks.neighbours[block][k / of_face][lane] {
+            Neighbour::Boundary(group) if scheme.boundaries[group].gives_back() == GivesBack::Along => 0.5,
+            _ => 1.0,
+        };
+        let weight = scheme.operators.line.basis.weights[k % of_face / AXES];
+        (scheme.spring_between([own, there]) * share * weight).sqrt() * self.h
+    }
+}
