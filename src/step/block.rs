@@ -43,13 +43,8 @@ impl<'a> Block<'a> {
         Medium::new(self.law().density(), self.law().shear_modulus(), self.scheme.operators.degree)
     }
 
-    /// The factor of the change of v, summed over both sides, from the first to the last point of a face: what [`Medium::turn`] is of it. 0 for a law with
-    /// memory: what has flowed differently on both sides does not turn with the body, and the power of its jump has either sign
-    /// (perfect plasticity in a vortex makes .19 % of energy by it).
+    /// What [`Medium::turn`] is of the change of v, summed over both sides, from the first to the last point of a face.
     pub fn turning(&self) -> f64 {
-        if self.law().has_memory() {
-            return 0.0;
-        }
         let nodes = &self.scheme.operators.line.basis.nodes;
         0.5 / (nodes[nodes.len() - 1] - nodes[0])
     }
