@@ -1,4 +1,4 @@
-"""Writes a mesh of Gmsh by meshio, meshlane (its fork) and VTK, in each mode of VTU and XDMF that they have. The test compares what dgmpm reads with the mesh.
+"""Writes a mesh of Gmsh, with fields at its nodes, by meshio, meshlane (its fork) and VTK, in each mode of VTU and XDMF that they have. The test compares what dgmpm reads with the mesh.
 
 Usage: mesh_files.py MESH FOLDER
 """
@@ -12,9 +12,16 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
 
+def fields(points):
+    """Vectors at the nodes, of two and of three numbers, which the test makes again to the bit."""
+    x, y = points[:, 0], points[:, 1]
+    return {"velocity": np.stack([2 * x, -y], axis=1), "displacement": np.stack([0.5 * x, 0.25 * y, 0 * x], axis=1)}
+
+
 def by_meshio(library, path, folder):
     """All modes of meshio, or of a fork with its interface; its text of VTU may have 12 digits only."""
     mesh, name = library.read(path), library.__name__
+    mesh.point_data = fields(mesh.points)
     # meshio 5.3.5 fails where it makes numbers of these for VTU.
     mesh.cell_sets = {}
     library.vtu.write(folder / f"{name}_text.vtu", mesh, binary=False)
@@ -46,6 +53,10 @@ def grid_of(mesh):
     tags = numpy_to_vtk(np.concatenate(mesh.cell_data["gmsh:physical"]).astype(np.int32), deep=True)
     tags.SetName("gmsh:physical")
     grid.GetCellData().AddArray(tags)
+    for name, values in fields(mesh.points).items():
+        array = numpy_to_vtk(values, deep=True)
+        array.SetName(name)
+        grid.GetPointData().AddArray(array)
     for name, pair in mesh.field_data.items():
         array = numpy_to_vtk(np.asarray(pair, np.int64), deep=True)
         array.SetName(name)
