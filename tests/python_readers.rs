@@ -170,3 +170,31 @@ fn a_mesh_of_gmsh_is_the_same_after_dolfinx_has_read_and_written_it() {
     assert!((area(&text) - area(&mesh)).abs() < 1e-14);
     assert_eq!((text.edges.len(), &text.edge_groups), (mesh.edges.len(), &mesh.edge_groups));
 }
+
+#[test]
+fn fields_that_dolfinx_writes_come_in_at_each_of_their_times() {
+    let folder = tempfile::tempdir().unwrap();
+    if !python::run_dolfinx("tests/python/dolfinx_fields.py", [folder.path()]) {
+        return;
+    }
+    seal::trust();
+    for (asked, time) in [(Some(0.0), 0.0), (Some(0.5), 0.5), (None, 0.5)] {
+        let nodal = nodal::read(&folder.path().join("fields.xdmf"), asked).unwrap();
+        assert_eq!((nodal.mesh.cells.len(), nodal.mesh.nodes.len()), (15, 24));
+        // What the script interpolates, to rounding.
+        let wanted = |[x, y]: [f64; 2]| {
+            [
+                ("v", [10.0 * time + 3.0 * x - 2.0 * y, 5.0 * x + y, 0.0]),
+                ("u", [1e-2 * x - 3e-3 * y, time * 4e-2 * y, 0.0]),
+            ]
+        };
+        for (node, x) in nodal.mesh.nodes.iter().enumerate() {
+            for (name, row) in wanted(*x) {
+                let data = nodal.data.iter().find(|data| data.name == name).unwrap();
+                assert_eq!(data.components, 3);
+                let near = |(a, b): (&f64, f64)| (a - b).abs() < 1e-14 * 10.0;
+                assert!(data.values[3 * node..3 * node + 3].iter().zip(row).all(near), "{asked:?}: {name} at {x:?}");
+            }
+        }
+    }
+}

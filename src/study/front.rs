@@ -126,7 +126,8 @@ mod tests {
         // 1e-9 away from a reference that is 5e-4 off.
         all[3].judge(Some(1e-9), Some(5e-4));
         assert_eq!((all[3].error(), all[3].bound().unwrap()), (None, 5e-4 + 1e-9));
-        assert_eq!(all[3].error_words(), "< 5e-4");
+        // Rounded up: 5.0e-4 would not be true.
+        assert_eq!(all[3].error_words(), "< 5.1e-4");
         assert_eq!(front(&all), [0, 2, 3]);
         assert!(answers(&all).iter().all(|answer| answer.error > 5e-4));
         // As far away as the reference is off: an error.

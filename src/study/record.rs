@@ -75,11 +75,11 @@ impl Record {
         self.error.or(self.below)
     }
 
-    /// The error in words: `6.31e-3`, or `< 2e-5` where it is below that of the reference.
+    /// The error in words: `6.31e-3`, or `< 2.1e-5` (rounded up) where it is below that of the reference.
     pub fn error_words(&self) -> String {
         match (self.error, self.below) {
             (Some(error), _) if error.is_finite() => format!("{error:.2e}"),
-            (_, Some(below)) => format!("< {below:.0e}"),
+            (_, Some(below)) => format!("< {:.1e}", rounded_up(below)),
             _ => "-".to_owned(),
         }
     }
@@ -122,6 +122,12 @@ impl Record {
             predicted: None,
         }
     }
+}
+
+/// A number above 0 to two digits, not less than it is.
+fn rounded_up(x: f64) -> f64 {
+    let unit = 10_f64.powf(x.log10().floor() - 1.0);
+    (x / unit).ceil() * unit
 }
 
 /// Builds, runs and compares.

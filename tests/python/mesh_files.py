@@ -1,4 +1,5 @@
-"""Writes a mesh of Gmsh, with fields at its nodes, by meshio, meshlane (its fork) and VTK, in each mode of VTU and XDMF that they have. The test compares what dgmpm reads with the mesh.
+"""Writes a mesh of Gmsh, with fields at its nodes, by meshio, meshlane (its fork) and VTK, in each mode of VTU, XDMF.
+The test compares what dgmpm reads with the mesh and the fields.
 
 Usage: mesh_files.py MESH FOLDER
 """
