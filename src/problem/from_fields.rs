@@ -6,6 +6,7 @@
 
 use crate::cloud::Locator;
 use crate::error::{Error, Place, Result};
+use crate::format;
 use crate::io::nodal::{self, Nodal};
 use crate::io::unstructured::AtNodes;
 use crate::mesh::{Mesh, map, recover};
@@ -124,10 +125,8 @@ impl Scene {
         }
         let file = self.initial.fields.as_ref()?.path.display().to_string();
         (count > 0).then(|| {
-            format!(
-                "{} outside of the mesh of {file}, by up to {farthest:.0e} of a cell of it, and take the values of the nearest cells",
-                if count == 1 { "1 grid node lies".to_owned() } else { format!("{count} grid nodes lie") }
-            )
+            let nodes = format::count(count, "grid node");
+            format!("outside of the mesh of {file}: {nodes}, by up to {farthest:.0e} of a cell; the nearest cells give the values there")
         })
     }
 
