@@ -32,9 +32,22 @@ pub fn short_seconds(s: f64) -> String {
     if s < 1.0 { format!("{:.1} ms", 1e3 * s) } else { seconds(s) }
 }
 
+/// A word of a command as a shell of Unix takes it: in quotes where it has blanks or other marks.
+pub fn shell(word: impl std::fmt::Display) -> String {
+    let word = word.to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) { word } else { format!("'{}'", word.replace('\'', r"'\''")) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn words_of_commands_are_quoted_where_a_shell_would_take_them_apart() {
+        let found = ["runs/a-1.toml", "runs/my plate.toml", "it's", "a$b", ""].map(shell);
+        assert_eq!(found, ["runs/a-1.toml", "'runs/my plate.toml'", r"'it'\''s'", "'a$b'", "''"]);
+    }
 
     #[test]
     fn one_thing_is_singular() {

@@ -134,8 +134,15 @@ fn without_an_exact_solution_a_finer_run_stands_in_and_knows_its_own_error() {
     assert!((0.4..2.5).contains(&(estimated / error)), "{estimated:e} {error:e}");
     // Three degrees more on the same mesh: below a thousandth.
     assert!(fine["reference_error"].as_f64().unwrap() < 1e-3 * error);
-    // Against itself a run has no error: the two solutions are compared at the same points.
-    assert!(numbers(&folder.path().join("coarse"), "error")[1] < 1e-13);
+    // Against itself a run has a distance of 0, which is no error: it is below that of the reference.
+    let coarse_out = folder.path().join("coarse");
+    assert!(numbers(&coarse_out, "velocity_l2")[1] < 1e-10 * numbers(&coarse_out, "velocity_l2")[0]);
+    assert_eq!((&column(&coarse_out, "error")[1][..], column(&coarse_out, "error_below")[0].as_str()), ("", ""));
+    let below = column(&coarse_out, "error_below")[1].parse::<f64>().unwrap();
+    assert!((below / estimated - 1.0).abs() < 1e-9, "{below:e} {estimated:e}");
+    let row = |all: &serde_json::Value| all["front"].as_array().unwrap().last().unwrap().clone();
+    assert!(row(&coarse)["error"].is_null() && row(&coarse)["error_below"].as_f64() == Some(below), "{coarse}");
+    assert!(row(&fine)["error"].as_f64() == Some(error) && row(&fine)["error_below"].is_null(), "{fine}");
 }
 
 #[test]
@@ -280,4 +287,40 @@ fn bad_options_are_refused_and_results_kept() {
     let (code, message) = study(&scene, folder.path(), "--degrees 1").unwrap_err();
     assert!(code == 2 && message.contains("--force"), "{message}");
     assert_eq!(std::fs::read_to_string(folder.path().join("study.csv")).unwrap(), "mine");
+}
+
+#[test]
+fn a_compared_key_without_effect_is_named_with_its_method_and_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let fixed = "--degrees 1 --refine 0.125 --set output=[]";
+    let options = format!("--methods rk-dgfem,ader-dgmpm --compare cloud.per_direction=2|3 {fixed}");
+    let said = study(&scene("manufactured.toml"), folder.path(), &options).unwrap();
+    let notes: Vec<&str> = said.lines().filter(|line| line.starts_with("note: ")).collect();
+    assert_eq!(notes.len(), 1, "{said}");
+    assert!(notes[0].contains("cloud.per_direction has no effect on rk-dgfem S1: rk-dgfem computes on the"), "{said}");
+    assert_eq!(json(folder.path())["notes"], serde_json::json!(notes));
+}
+
+#[test]
+fn an_expression_that_is_no_number_is_bad_input_and_no_loss_of_stability() {
+    let folder = tempfile::tempdir().unwrap();
+    let force = r#"source=[{kind="body-force",value=["log(1e-9-t)","0"]}]"#;
+    let fixed = format!("--methods rk-dgfem --degrees 1 --refine 0.125 --set {force} --set output=[]");
+    let said = study(&scene("simple_wave.toml"), folder.path(), &fixed).unwrap();
+    let status = &column(folder.path(), "status")[0];
+    assert!(status.starts_with("\"bad input: ") && said.contains("`log(1e-9-t)` is NaN at X = ("), "{said}");
+    assert!(said.contains("cheapest by error: no run has a known error") && !said.contains("unstable"), "{said}");
+    // In the run that others are compared with it ends the study, at its key.
+    let own = Body::smooth_box(4).write(folder.path(), "box");
+    let (code, message) = study(&own, &folder.path().join("own"), &fixed).unwrap_err();
+    assert!(code == 2 && message.contains("in the reference run: ") && message.contains("is NaN at X"), "{message}");
+}
+
+#[test]
+fn the_cheapest_of_one_run_is_that_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let said =
+        study(&scene("manufactured.toml"), folder.path(), "--methods rk-dgfem --degrees 1 --refine 0.125").unwrap();
+    let after = said.split("cheapest by error:\n").nth(1).unwrap();
+    assert!(after.starts_with("  for an error of ") && after.contains(" use rk-dgfem S1 on 4 cells: "), "{said}");
 }

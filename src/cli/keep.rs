@@ -1,6 +1,7 @@
 //! Files that are not written over.
 
 use crate::error::{Error, Result};
+use crate::file::check_place_of_folder;
 use std::path::{Path, PathBuf};
 
 /// Refuses to write over a file unless `force`.
@@ -10,6 +11,7 @@ pub fn keep(path: &Path, force: bool) -> Result<()> {
 
 /// The same, where the file is not named by --out but as `other` says.
 pub fn keep_as(path: &Path, force: bool, other: &str) -> Result<()> {
+    path.parent().map_or(Ok(()), check_place_of_folder)?;
     if path.exists() && !force {
         let remedy = format!("give --force to replace it, or {other}");
         return Err(Error::input(format!("{} exists", path.display()), remedy));

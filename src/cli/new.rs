@@ -3,6 +3,7 @@
 use super::keep::{keep_as, keep_from};
 use super::print::{note, say, table};
 use crate::error::Result;
+use crate::format::shell;
 use crate::io::{pending, write_mesh};
 use crate::problem::First;
 use std::path::PathBuf;
@@ -38,7 +39,7 @@ pub fn run(args: &Args) -> Result<()> {
     pending::write_text(&out, &text)?;
     let name = out.file_stem().unwrap_or_default().to_string_lossy();
     say(format!("scene written to {}; it runs as it is:", out.display()));
-    say(format!("  dgmpm run {}", out.display()));
-    say(format!("  dgmpm plot runs/{name}"));
+    say(format!("  dgmpm run {}", shell(out.display())));
+    say(format!("  dgmpm plot {}", shell(format!("runs/{name}"))));
     Ok(())
 }

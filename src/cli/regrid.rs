@@ -3,7 +3,7 @@
 use super::keep::keep;
 use super::print::say;
 use crate::error::{Error, Result};
-use crate::format::count;
+use crate::format::{count, shell};
 use crate::io::read_mesh;
 use crate::problem::{Stopped, changes};
 use crate::regrid::points::Policy;
@@ -46,7 +46,7 @@ pub fn run(args: &Args) -> Result<()> {
     changes(&totals).iter().for_each(say);
     problem.write_start(&to)?;
     let (cells, root, scene) = (count(problem.body.mesh.cells.len(), "cell"), to.root.display(), to.scene());
-    let on = format!("dgmpm run {} --out {root} --force", scene.display());
+    let on = format!("dgmpm run {} --out {} --force", shell(scene.display()), shell(&root));
     say(format!("the state on {cells} is in {root}; go on by: {on}"));
     Ok(())
 }

@@ -20,6 +20,21 @@ pub fn about(path: &Path) -> Result<Metadata, String> {
     }
 }
 
+/// Refuses a place for a folder of results where a file stands, at its end or on the way to it.
+///
+/// # Errors
+/// Bad input, which names the file.
+pub fn check_place_of_folder(path: &Path) -> crate::Result<()> {
+    // The nearest that is there.
+    match path.ancestors().find(|place| place.symlink_metadata().is_ok()) {
+        Some(there) if !there.is_dir() => {
+            let what = format!("{} is no folder, and results go into a folder", there.display());
+            Err(crate::Error::input(what, "give another folder by --out"))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// All bytes of a regular file that has at most `most` of them.
 ///
 /// # Errors

@@ -35,7 +35,7 @@ const HEAD: u64 = 4096;
 
 /// What can be read, for messages.
 pub const READ: &str = "the files that can be read are: meshes of Gmsh (.msh), geometries (.geo), scenes (.toml), the .h5 files of dgmpm (mesh, \
-                        cloud, operators, snapshot, checkpoint, export), tables (.csv), summary.json, meshes and exports of VTK, meshio and DOLFINx (.vtu, .pvd, .xdmf), and the \
+                        cloud, operators, snapshot, checkpoint, export), tables (.csv), summary.json, meshes and exports of VTK, meshio and DOLFINx (.vtu, .pvd, .xdmf, .vtkhdf), and the \
                         folder of a run or of a study";
 
 impl Info {

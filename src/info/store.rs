@@ -3,7 +3,7 @@
 use super::{Info, READ, mesh_facts};
 use crate::error::Result;
 use crate::io::checkpoint::{self, Checkpoint};
-use crate::io::hdf5::Reader;
+use crate::io::hdf5::{Reader, Values};
 use crate::io::snapshot::{self, Snapshot};
 use crate::io::store::Store;
 use crate::io::{cloud_file, mesh_file, operators_file};
@@ -27,7 +27,7 @@ pub(super) fn info(path: &Path) -> Result<Info> {
         "" => {
             let all = reader.names()?;
             match all.iter().any(|name| name == "VTKHDF") {
-                true => Info::new("VTKHDF: a series for ParaView, all times in one file"),
+                true => series(&reader)?,
                 false => Info::new("HDF5 file of an export, which an .xdmf file names").with("arrays", all),
             }
         }
@@ -47,6 +47,14 @@ pub(super) fn info(path: &Path) -> Result<Info> {
     ];
     let found = keys.into_iter().map(|key| Ok((key, text(key)?))).collect::<Result<Vec<_>>>()?;
     Ok(found.into_iter().fold(info, |info, (key, text)| info.maybe(key, text.filter(|text| !text.is_empty()))))
+}
+
+/// A series for ParaView; other programs write files of one time too, which have no list of them.
+fn series(reader: &Reader) -> Result<Info> {
+    let info = Info::new("VTKHDF: a series for ParaView, all times in one file");
+    let Ok((_, Values::F64(times))) = reader.get_within("VTKHDF/Steps/Values") else { return Ok(info) };
+    let ends = times.first().zip(times.last()).map(|(first, last)| serde_json::json!([first, last]));
+    Ok(info.with("times", times.len()).maybe("t_from_to_s", ends))
 }
 
 /// The first length of an array.

@@ -22,7 +22,7 @@ const HEAD: u64 = 4096;
 
 /// What a file is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+pub(super) enum Kind {
     Store,
     Gmsh,
     Vtu,
@@ -111,14 +111,7 @@ fn grids<T>(path: &Path, kind: Kind, then: impl FnOnce(Vec<Part>) -> Result<T>) 
 }
 
 fn grids_of<T>(bytes: &[u8], path: &Path, kind: Kind, then: impl FnOnce(Vec<Part>) -> Result<T>) -> Result<T> {
-    if seal::check_text(bytes) == Seal::Broken {
-        let what = "the file is damaged: its bytes are not those that were written";
-        return Err(Error::at(
-            Place::file(path),
-            what,
-            "export it again; if you have changed it, remove its last line",
-        ));
-    }
+    check_seal(bytes, path)?;
     if kind == Kind::Vtu {
         let fault = |why: String| Error::at(Place::file(path), format!("cannot read the mesh: {why}"), VTU);
         return then(vec![vtu::part(bytes, &fault).map_err(fault)?]);
@@ -129,6 +122,27 @@ fn grids_of<T>(bytes: &[u8], path: &Path, kind: Kind, then: impl FnOnce(Vec<Part
     then(parts)
 }
 
+/// Refuses a text of this program that was changed.
+fn check_seal(bytes: &[u8], path: &Path) -> Result<()> {
+    match seal::check_text(bytes) {
+        Seal::Broken => {
+            let what = "the file is damaged: its bytes are not those that were written";
+            Err(Error::at(Place::file(path), what, "export it again; if you have changed it, remove its last line"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// All bytes of a VTU or XDMF file that is whole.
+///
+/// # Errors
+/// A file that cannot be read or was changed.
+pub(super) fn whole(path: &Path) -> Result<Vec<u8>> {
+    let bytes = bytes(path)?;
+    check_seal(&bytes, path)?;
+    Ok(bytes)
+}
+
 /// All bytes of a file that fits into memory.
 fn bytes(path: &Path) -> Result<Vec<u8>> {
     let most = memory::available() as u64;
@@ -137,16 +151,32 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
 }
 
 /// What a file is.
-fn kind_of(path: &Path) -> Result<Kind> {
+pub(super) fn kind_of(path: &Path) -> Result<Kind> {
     let fault = |why: String| Error::at(Place::file(path), format!("the mesh cannot be read: {why}"), FORMATS);
     regular::about(path).map_err(fault)?;
-    if store::is_meant_as_store(path) {
-        return Ok(Kind::Store);
-    }
     let mut head = Vec::new();
     let read = std::fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
     read.map_err(|why| fault(why.to_string()))?;
+    check_no_series(path, &head)?;
+    if store::is_meant_as_store(path) {
+        return Ok(Kind::Store);
+    }
     told_by(&head).ok_or_else(|| unknown(path, &head))
+}
+
+/// Refuses series for ParaView, which are no meshes, with what takes their place.
+fn check_no_series(path: &Path, head: &[u8]) -> Result<()> {
+    let is_list =
+        xml::root(head).is_some_and(|(name, kind)| name == "VTKFile" && kind.as_deref() == Some("Collection"));
+    let is_vtkhdf = path.extension().is_some_and(|ending| ending == "vtkhdf");
+    let what = match () {
+        () if is_list => "this is a .pvd file: a list of the .vtu files of a series, and no mesh",
+        () if is_vtkhdf => "this is a VTKHDF file, which is not read as a mesh",
+        () => return Ok(()),
+    };
+    let of_run = "of a run of dgmpm give its mesh.h5, or a grid_<step>.vtu of `dgmpm export`";
+    let own = if is_list { "give one of the .vtu files that it names" } else { "save it as .vtu" };
+    Err(Error::at(Place::file(path), what, format!("{own}; {of_run}. Else {FORMATS}")))
 }
 
 /// What a file is by its first bytes.

@@ -3,6 +3,7 @@
 //!
 //! The number of threads is not among them: a state has the same bytes for any number.
 
+use super::hdf5;
 use crate::built;
 use crate::step::Scheme;
 
@@ -34,6 +35,15 @@ impl Provenance {
             scene: scheme.scene.clone(),
             operators: scheme.operators.key.clone(),
         }
+    }
+
+    /// Puts what is known, and in words where points are, into an HDF5 file of an export, as attributes.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn label(&self, file: &hdf5_metno::File, positions: &str) -> hdf5_metno::Result<()> {
+        let all = self.attributes().into_iter().chain([("positions", positions.to_owned())]);
+        all.into_iter().try_for_each(|(name, text)| hdf5::put_attribute(file, name, &text))
     }
 
     /// What is known, under its names.

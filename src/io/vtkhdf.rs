@@ -80,12 +80,7 @@ impl Series {
     /// # Errors
     /// A file that cannot be written.
     pub fn label(&self, from: &Provenance, positions: &str) -> Result<()> {
-        let put = |(name, text): (&str, String)| hdf5::put_attribute(&self.file, name, &text);
-        from.attributes()
-            .into_iter()
-            .chain([("positions", positions.to_owned())])
-            .try_for_each(put)
-            .map_err(|e| self.failed(&e))
+        from.label(&self.file, positions).map_err(|e| self.failed(&e))
     }
 
     /// Adds a grid with its fields at a time, s.
@@ -124,8 +119,9 @@ impl Series {
         // A field that is not there at all times would have fewer beginnings than there are times.
         match self.begins.iter().find(|(_, begins)| begins.len() != self.times.len()) {
             Some((name, _)) => {
-                let what = format!("the field `{name}` is not there at all times");
-                Err(Error::output(&self.path, what + ", which VTKHDF cannot express; export this run as VTU"))
+                let name = name.rsplit('/').next().unwrap_or(name);
+                let what = format!("the field `{name}` is not there at all times, which a VTKHDF file cannot express");
+                Err(Error::input(what, "export this run by --format vtu, or run it again with this field at all times"))
             }
             None => Ok(()),
         }
@@ -254,4 +250,30 @@ fn hash_of(values: &[f64]) -> blake3::Hash {
         hasher.update(&x.to_le_bytes());
     }
     hasher.finalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::grid::Kind;
+
+    #[test]
+    fn a_field_that_is_not_there_at_all_times_is_bad_input_with_what_takes_its_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let cloud = |names: &[&str]| PointCloud {
+            points: vec![[0.0; 3]],
+            fields: names.iter().map(|name| Field::new(*name, Kind::Scalar, vec![1.0])).collect(),
+            about: String::new(),
+        };
+        for (first, second) in [(&["a", "b"][..], &["a"][..]), (&["a"], &["a", "b"])] {
+            let mut series = Series::create(&folder.path().join("points.vtkhdf")).unwrap();
+            series.push_points(0.0, &cloud(first)).unwrap();
+            let why = series.push_points(1.0, &cloud(second)).unwrap_err();
+            assert!(
+                why.exit_code() == 2 && why.to_string().contains("the field `b` is not there at all times"),
+                "{why}"
+            );
+            assert!(why.to_string().contains("--format vtu"), "{why}");
+        }
+    }
 }

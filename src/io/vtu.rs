@@ -8,7 +8,7 @@ mod decode;
 mod read;
 
 pub use cells::{EDGES, part};
-pub use read::points;
+pub use read::{at_nodes, points};
 
 use std::fmt::Write;
 use std::path::Path;
@@ -56,6 +56,19 @@ pub fn write_points(path: &Path, cloud: &PointCloud) -> Result<()> {
     piece.points(&cloud.points);
     piece.cells(count, 1, VERTEX);
     write_text(path, &piece.end(&cloud.about))
+}
+
+/// Writes bilinear quadrilaterals with fields at their nodes, which cells have in common.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_nodal(path: &Path, points: &[[f64; 3]], cells: &[[usize; 4]], fields: &[Field]) -> Result<()> {
+    super::grid::check_fields(fields, points.len())?;
+    let mut piece = Piece::begin(points.len(), cells.len(), None);
+    piece.fields("PointData", fields);
+    piece.points(points);
+    piece.cells_of(cells.as_flattened().iter().map(|&node| node as i64).collect(), 4, QUAD);
+    write_text(path, &piece.end(""))
 }
 
 /// The text of a file with one piece.
@@ -121,10 +134,13 @@ impl Piece {
 
     /// Cells with `size` own points each; the points of one cell follow those of the cell before.
     fn cells(&mut self, count: usize, size: usize, kind: u8) {
-        let indices = |all: &mut dyn Iterator<Item = usize>| all.map(|k| k as i64).collect::<Vec<_>>();
-        let last = (count * size).saturating_sub(1);
+        self.cells_of((0..count * size).map(|k| k as i64).collect(), size, kind);
+    }
+
+    /// Cells with `size` points each, by the numbers of these.
+    fn cells_of(&mut self, connectivity: Vec<i64>, size: usize, kind: u8) {
+        let (count, last) = (connectivity.len() / size, connectivity.iter().max().copied().unwrap_or(0));
         self.0.push_str("<Cells>");
-        let connectivity = indices(&mut (0..count * size));
         self.array(
             "Int64",
             "connectivity",
@@ -132,7 +148,7 @@ impl Piece {
             ["0", &last.to_string()],
             bytes(&connectivity, |k| k.to_le_bytes()),
         );
-        let offsets = indices(&mut (1..=count).map(|cell| cell * size));
+        let offsets: Vec<i64> = (1..=count).map(|cell| (cell * size) as i64).collect();
         let range = [size.to_string(), (count * size).to_string()];
         self.array("Int64", "offsets", [1, 0], [&range[0], &range[1]], bytes(&offsets, |k| k.to_le_bytes()));
         let kinds = vec![kind; count];

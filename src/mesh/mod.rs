@@ -8,6 +8,7 @@ pub mod map;
 pub mod parts;
 pub mod periodic;
 pub mod quality;
+pub mod recover;
 mod refine;
 mod split;
 pub mod structured;

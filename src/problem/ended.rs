@@ -3,6 +3,7 @@
 use super::Problem;
 use super::lost::{Case, kept};
 use crate::error::{Error, Result};
+use crate::format::shell;
 use crate::io::{pending, snapshot};
 use crate::observe;
 use crate::registry::{controls, fluxes};
@@ -78,7 +79,7 @@ fn kept_snapshot(
 /// How to go on with a run that was kept at its last step.
 fn resume(folder: &Folder, step: usize) -> String {
     match snapshot::path(&folder.checkpoints(), step).exists() {
-        true => format!("; go on by: dgmpm resume {}", folder.root.display()),
+        true => format!("; go on by: dgmpm resume {}", shell(folder.root.display())),
         false => String::new(),
     }
 }

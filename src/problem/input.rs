@@ -89,6 +89,7 @@ pub(super) fn check_same_input(scene: &Scene, body: &Body, folder: &Folder) -> R
         let same = match &name[..] {
             "mesh.h5" | "cloud.h5" => true,
             "initial.h5" => Snapshot::read(&path)?.bits() == Snapshot::read(&target)?.bits(),
+            "initial.vtu" => scene.same_fields(&target)?,
             _ if name.ends_with(".h5") => read_mesh(&path)? == read_mesh(&target)?,
             _ => text(&path)? == text(&target)?,
         };
@@ -146,8 +147,10 @@ fn sources(scene: &Scene, files: &Files, operators: Option<&Path>, folder: &Fold
     let cloud = cloud.map(|path| source("cloud.path", path, folder.cloud()));
     let snapshot = scene.initial.snapshot.as_ref();
     let snapshot = snapshot.map(|path| source("initial.snapshot", scene.resolve(path), folder.root.join("initial.h5")));
+    let fields = scene.initial.fields.as_ref();
+    let fields = fields.map(|f| source("initial.fields", scene.resolve(&f.path), folder.root.join("initial.vtu")));
     let operators = operators.map(|path| source("scheme", path.to_owned(), folder.operators()));
-    let mut out: Vec<Source> = [mesh, facets, cloud, snapshot, operators].into_iter().flatten().collect();
+    let mut out: Vec<Source> = [mesh, facets, cloud, snapshot, fields, operators].into_iter().flatten().collect();
     for (number, boundary) in scene.boundaries.iter().enumerate() {
         for (parameter, file) in boundary.condition.files() {
             let target = folder.root.join(Scene::stored_loads(number, parameter.name));
@@ -177,6 +180,7 @@ pub fn write_input(problem: &Problem, files: &Files, folder: &Folder, certificat
     if let Some(snapshot) = &scene.initial.snapshot {
         copy(&scene.resolve(snapshot), &folder.root.join("initial.h5"))?;
     }
+    scene.store_fields(&folder.root.join("initial.vtu"))?;
     let fields = match scene.initial.from_cloud {
         true => {
             let solution = Solution::of_state(scheme, state, &body.material);

@@ -1,6 +1,6 @@
 //! Why a run lost stability, what is left of it, and what may help: that depends on what the scene has switched on.
 
-use super::Problem;
+use super::{Culprit, Problem};
 use crate::error::{Error, Result};
 use crate::format::count;
 use crate::operators::Sampling;
@@ -41,16 +41,23 @@ pub fn kept(lost: &Lost, file: &Result<PathBuf>) -> String {
     }
 }
 
+impl Problem {
+    /// The expression of the scene that is not finite, where a run has lost stability by one.
+    pub(crate) fn culprit(&self, lost: &Lost) -> Option<Culprit> {
+        // An expression that grows beyond bounds at the start or end of the step turns cells inside out before it is infinite.
+        let mut times = self.scheme.data_times(lost.time, lost.dt);
+        times.extend([lost.time, lost.time + lost.dt]);
+        self.scene.culprit(&self.body.mesh, &self.scheme, lost.loss.cell, &times)
+    }
+}
+
 impl Case<'_> {
     /// The error: bad input where an expression of the scene is not finite, which no other step size can mend; else lost
     /// stability. `kept` says where a state is from which the run can go on.
     pub fn error(&self, kept: &str) -> Error {
         let Self { problem, lost, .. } = self;
         let scene = &problem.scene;
-        // An expression that grows beyond bounds at the start or end of the step turns cells inside out before it is infinite.
-        let mut times = problem.scheme.data_times(lost.time, lost.dt);
-        times.extend([lost.time, lost.time + lost.dt]);
-        if let Some(culprit) = scene.culprit(&problem.body.mesh, &problem.scheme, lost.loss.cell, &times) {
+        if let Some(culprit) = problem.culprit(lost) {
             let what = format!("step {}, t = {:.9e} s: {}", lost.step, lost.time, culprit.what);
             let remedy = format!("give an expression that is finite at all places and times of the run\n  {kept}");
             return scene.error(&culprit.key, what, remedy);

@@ -30,6 +30,7 @@ mod ends;
 mod exact;
 mod first;
 mod from_cloud;
+mod from_fields;
 mod from_snapshot;
 mod grids;
 mod export;

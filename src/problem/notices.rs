@@ -42,6 +42,7 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     all.extend(overlap(scheme, state));
     all.extend(in_obstacles(scene, mesh, scheme, state));
     all.extend(large(mesh));
+    all.extend(scene.notice_of_fields(mesh));
     all.extend(fast_start(mesh, scheme, state, survey));
     all.extend(fast_boundary(scene, mesh, scheme));
     all.extend(thin(mesh, blocks, scene.scheme.degree));

@@ -1,5 +1,6 @@
-//! The initial state of a scene: from its expressions, its exact solution, a snapshot or the fields of its cloud.
+//! The initial state of a scene: from its expressions, its exact solution, a snapshot, the fields of its cloud or those of another mesh.
 
+use super::from_fields::{self, Sampler};
 use crate::error::Result;
 use crate::exact::Exact;
 use crate::expression::Expression;
@@ -29,16 +30,19 @@ impl Scene {
         let components = self.components();
         let mut cells = vec![0.0; mesh.cells.len() * components * n];
         let material = self.material_of_cells(mesh);
-        let start = Start::of(self, mesh, &scheme.operators.line);
+        let start = Start::of(self, mesh, &scheme.operators.line)?;
         for (cell, values) in cells.chunks_mut(components * n).enumerate() {
             let density = scheme.laws[material[cell]].density();
             for a in 0..n {
-                let (f, v) = start.at(cell, a)?;
-                let u = [f[0], f[1], f[2], f[3], density * v[0], density * v[1]];
-                u.into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
+                let (f, v, displacement) = start.at(cell, a)?;
+                let u = [f[0], f[1], f[2], f[3], density * v[0], density * v[1]].into_iter().chain(displacement);
+                u.take(components).enumerate().for_each(|(k, u)| values[k * n + a] = u);
             }
         }
         let mut state = State { time: self.start, ..State::pack(&scheme.operators.blocks, n, components, &cells) };
+        if start.fields.is_some() {
+            state = state.holding_from_now(n);
+        }
         scheme.set_internal(&mut state, &scheme.virgin_internal());
         Ok(state)
     }
@@ -57,9 +61,10 @@ impl Scene {
             return Ok(());
         }
         let line = Line::new(self.scheme.degree);
-        let (start, n) = (Start::of(self, mesh, &line), line.m * line.m);
+        let (start, n) = (Start::of(self, mesh, &line)?, line.m * line.m);
         let all = self.initial.velocity.iter().chain(&self.initial.deformation);
-        let varies = start.exact.is_none() && all.map(Expression::constant).any(|value| value.is_none());
+        let varies = start.exact.is_none() && all.map(Expression::constant).any(|value| value.is_none())
+            || start.fields.is_some();
         // What is the same at all nodes is looked at once. An exact solution is good within its ranges: one look is enough, too.
         let cells = if varies { mesh.cells.len() } else { 1 };
         (0..cells).try_for_each(|cell| (0..n).try_for_each(|a| start.at(cell, a).map(drop)))
@@ -107,16 +112,18 @@ struct Start<'a> {
     mesh: &'a Mesh,
     line: &'a Line,
     exact: Option<Arc<dyn Exact>>,
+    /// Those of a file.
+    fields: Option<Sampler>,
 }
 
 impl<'a> Start<'a> {
-    fn of(scene: &'a Scene, mesh: &'a Mesh, line: &'a Line) -> Self {
+    fn of(scene: &'a Scene, mesh: &'a Mesh, line: &'a Line) -> Result<Self> {
         let exact = scene.exact.as_ref().filter(|exact| exact.initial).and_then(|_| scene.build_exact());
-        Self { scene, mesh, line, exact }
+        Ok(Self { scene, mesh, line, exact, fields: scene.sampler()? })
     }
 
-    /// At a node of a cell.
-    fn at(&self, cell: usize, node: usize) -> Result<([f64; 4], [f64; 2])> {
+    /// F, v and u at a node of a cell.
+    fn at(&self, cell: usize, node: usize) -> Result<([f64; 4], [f64; 2], [f64; 2])> {
         let Self { scene, mesh, .. } = self;
         let x = mesh::map::position(&mesh.corners(cell), self.line.basis.node_2d(node));
         let (f, v) = match &self.exact {
@@ -126,8 +133,14 @@ impl<'a> Start<'a> {
                 scene.initial.at(x)
             }
         };
+        let of_file = match &self.fields {
+            Some(fields) => scene.sampled(fields, x, mesh.number(cell))?,
+            None => from_fields::Values::default(),
+        };
+        let (f, v) = (of_file.deformation.unwrap_or(f), of_file.velocity.unwrap_or(v));
         scene.check_initial(f, v, x, mesh.number(cell))?;
-        Ok((f, v))
+        // Without the field the displacement counts from the start.
+        Ok((f, v, of_file.displacement.unwrap_or_default()))
     }
 }
 

@@ -245,7 +245,7 @@ fn is_input(name: &str) -> bool {
         let rest = name.strip_prefix(stem).and_then(|rest| rest.strip_suffix(ending));
         rest.is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
     };
-    ["scene.toml", "mesh.h5", "cloud.h5", "operators.h5", "initial.h5"].contains(&name)
+    ["scene.toml", "mesh.h5", "cloud.h5", "operators.h5", "initial.h5", "initial.vtu"].contains(&name)
         || numbered("boundary_", ".csv")
         || numbered("regrid_", ".h5")
         || numbered("regrid_", ".geo")

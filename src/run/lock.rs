@@ -2,6 +2,7 @@
 //! however it ends.
 
 use crate::error::Error;
+use crate::file;
 use crate::io::own::LIST;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::ErrorKind;
@@ -21,6 +22,7 @@ impl Lock {
     /// Another run has it; a folder that cannot be made or written to.
     pub(super) fn take(root: &Path) -> Result<Self, Error> {
         let fail = |why: std::io::Error| Error::output(root, why);
+        file::check_place_of_folder(root)?;
         std::fs::create_dir_all(root).map_err(fail)?;
         let list = root.join(LIST);
         let file = OpenOptions::new().create(true).append(true).open(&list);

@@ -5,6 +5,7 @@
 //! and lists what exists. A scene knows neither mesh nor solver: names become types elsewhere. Units are SI.
 
 pub mod draft;
+mod fields;
 mod given;
 mod groups;
 mod load;
@@ -31,6 +32,7 @@ use crate::error::{Error, Place, Result};
 use crate::expression::Expression;
 use crate::registry::controls::Control;
 use crate::registry::{self, Chosen, Method, Sweeps, limiters};
+pub use fields::Fields;
 pub use mesh::{GroupName, Mesh, MeshGroups};
 pub use names::Histories;
 use origin::{Origin, Part};
@@ -138,6 +140,9 @@ pub struct Initial {
     pub deformation: [Expression; 4],
     /// A snapshot that the run goes on from, as written in the scene; nothing else then counts.
     pub snapshot: Option<PathBuf>,
+    /// Fields of another program, which take the place of the expressions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fields: Option<Fields>,
 }
 
 /// The condition on a group of boundary edges.

@@ -29,6 +29,12 @@ impl Scene {
         if self.initial.snapshot.is_some() {
             in_table(&mut document, "initial", |table| put(table, "snapshot", "initial.h5"));
         }
+        if self.initial.fields.is_some() {
+            in_table(&mut document, "initial", |table| {
+                super::fields::NAMES.iter().for_each(|key| drop(table.remove(key)));
+                put(table, "fields", "initial.vtu");
+            });
+        }
         for (number, boundary) in self.boundaries.iter().enumerate() {
             let entry = document.get_mut("boundary").and_then(|list| list.get_mut(number));
             let Some(table) = entry.and_then(Item::as_table_like_mut) else { continue };
@@ -69,7 +75,8 @@ impl Scene {
     pub fn portable_from(&self, snapshot: &str) -> String {
         let Ok(mut document) = self.portable_toml(true, true).parse::<DocumentMut>() else { return self.to_toml() };
         in_table(&mut document, "initial", |table| {
-            ["velocity", "deformation"].iter().for_each(|key| drop(table.remove(key)));
+            let others = ["velocity", "deformation", "fields"];
+            others.iter().chain(&super::fields::NAMES).for_each(|key| drop(table.remove(key)));
             put(table, "snapshot", snapshot);
         });
         document.to_string()

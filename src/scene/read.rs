@@ -154,6 +154,7 @@ fn initial(table: Option<&mut Reader>, cloud: &Cloud) -> Result<Initial> {
         velocity: [number(0.0), number(0.0)],
         deformation: [number(1.0), number(0.0), number(0.0), number(1.0)],
         snapshot: None,
+        fields: None,
     };
     let Some(table) = table else { return Ok(initial) };
     if let Some(path) = table.text("snapshot")? {
@@ -171,6 +172,7 @@ fn initial(table: Option<&mut Reader>, cloud: &Cloud) -> Result<Initial> {
         table.finish()?;
         return Ok(initial);
     }
+    initial.fields = super::fields::read(table)?;
     if let Some(velocity) = table.expressions("velocity")? {
         at_start(table, "velocity", &velocity)?;
         initial.velocity = velocity;

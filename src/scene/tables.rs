@@ -2,6 +2,7 @@
 //! [`crate::registry`], with its entry.
 
 use super::Histories;
+use super::fields;
 use crate::registry::quantities::Statistic;
 use crate::registry::{
     AT_LEAST_1, Check, FINITE, FLUXES, Form, METHODS, NOT_NEGATIVE, POSITIVE, Parameter, Policy, Preset, SHARE, Sweeps,
@@ -11,7 +12,13 @@ use crate::registry::{
     CONDITIONS, CONTROLS, LAWS, LAYOUTS, LIMITERS, OUTPUTS, QUANTITIES, SOLUTIONS, SOURCES, grids, limiters,
 };
 
-const fn key(name: &'static str, about: &'static str, unit: &'static str, form: Form, default: Preset) -> Parameter {
+pub(super) const fn key(
+    name: &'static str,
+    about: &'static str,
+    unit: &'static str,
+    form: Form,
+    default: Preset,
+) -> Parameter {
     Parameter { name, about, unit, form, default }
 }
 
@@ -180,7 +187,17 @@ pub(super) const FROM: Parameter = key(
     Form::Name(|| vec!["cloud"], &[]),
     Preset::Absent("none"),
 );
-pub(super) const INITIAL: &[Parameter] = &[VELOCITY, DEFORMATION, SNAPSHOT, FROM];
+pub(super) const INITIAL: &[Parameter] = &[
+    VELOCITY,
+    DEFORMATION,
+    SNAPSHOT,
+    FROM,
+    fields::FILE,
+    fields::VELOCITY,
+    fields::DISPLACEMENT,
+    fields::DEFORMATION,
+    fields::TIME,
+];
 
 pub(super) const EXACT: &[Parameter] = &[needed("kind", "the solution", "", Form::Name(|| SOLUTIONS.names(), &[]))];
 

@@ -52,7 +52,7 @@ impl Scene {
     }
 
     /// The keys that the scene gives and that change nothing, and why.
-    fn without_effect(&self) -> Vec<(String, String)> {
+    pub(crate) fn without_effect(&self) -> Vec<(String, String)> {
         let given = self.origin.given();
         let (method, degree) = (self.scheme.method, self.scheme.degree);
         let name = method.name();

@@ -3,10 +3,11 @@
 use super::case::Series;
 use super::record::Record;
 
-/// Indices of the records that no other beats in both error and CPU seconds, by falling error.
+/// Indices of the records that no other beats in both error and CPU seconds, by falling error. An error that is only known to be below a
+/// number counts as that number.
 pub fn front(records: &[Record]) -> Vec<usize> {
     let mut order: Vec<(usize, f64)> =
-        records.iter().enumerate().filter_map(|(k, r)| Some((k, r.error().filter(|e| e.is_finite())?))).collect();
+        records.iter().enumerate().filter_map(|(k, r)| Some((k, r.bound().filter(|e| e.is_finite())?))).collect();
     order.sort_by(|a, b| records[a.0].cpu.total_cmp(&records[b.0].cpu).then(a.1.total_cmp(&b.1)));
     let mut best = f64::INFINITY;
     order.retain(|&(_, error)| {
@@ -27,27 +28,32 @@ pub struct Answer {
 }
 
 /// The cheapest record for each power of ten between the largest and the smallest error of the front; where these are
-/// less than two powers apart, as at a shock, for 1, 2, 3 and 5 times each power.
+/// less than two powers apart, as at a shock, for 1, 2, 3 and 5 times each power; where no such number lies between them, for the errors
+/// of the front themselves.
 pub fn answers(records: &[Record]) -> Vec<Answer> {
     let front = front(records);
-    let errors: Vec<f64> = front.iter().filter_map(|&k| records[k].error()).collect();
+    let errors: Vec<f64> = front.iter().filter_map(|&k| records[k].bound()).collect();
     let (Some(&largest), Some(&smallest)) = (errors.first(), errors.last()) else { return vec![] };
     let steps: &[f64] = if largest / smallest < 100.0 { &[5.0, 3.0, 2.0, 1.0] } else { &[1.0] };
     let powers = (smallest.log10().floor() as i32..=largest.log10().floor() as i32).rev();
     let targets = powers.flat_map(|power| steps.iter().map(move |step| step * 10_f64.powi(power)));
     let cheapest = |error: f64| {
         // The front goes from cheap to dear.
-        let record = *front.iter().find(|&&k| records[k].error().is_some_and(|e| e <= error))?;
+        let record = *front.iter().find(|&&k| records[k].bound().is_some_and(|e| e <= error))?;
         (error < largest).then_some(Answer { error, record })
     };
-    targets.filter_map(cheapest).collect()
+    let found: Vec<Answer> = targets.filter_map(cheapest).collect();
+    if !found.is_empty() {
+        return found;
+    }
+    front.iter().filter_map(|&record| Some(Answer { error: records[record].bound()?, record })).collect()
 }
 
 /// CPU seconds of a series for an error, by a straight line in logarithms between the two records around it; none where
 /// it was not reached. An error above that of the coarsest mesh costs what that mesh costs.
 pub fn cost(records: &[Record], series: &Series, error: f64) -> Option<f64> {
     let mut points: Vec<(f64, f64)> =
-        records.iter().filter(|r| r.case.series == *series).filter_map(|r| Some((r.error()?, r.cpu))).collect();
+        records.iter().filter(|r| r.case.series == *series).filter_map(|r| Some((r.bound()?, r.cpu))).collect();
     points.sort_by(|a, b| b.0.total_cmp(&a.0));
     let first = *points.first()?;
     if first.0 <= error {
@@ -102,6 +108,31 @@ mod tests {
         let shock = [record(1, 1.0, 1.0, 9e-2), record(2, 1.0, 2.0, 4e-2), record(2, 2.0, 3.0, 2.5e-2)];
         let found: Vec<(f64, usize)> = answers(&shock).iter().map(|a| (a.error, a.record)).collect();
         assert_eq!(found, [(0.05, 1), (0.03, 2)]);
+    }
+
+    #[test]
+    fn where_no_round_error_lies_between_those_of_the_front_they_are_the_answers() {
+        let one = [record(1, 1.0, 1.0, 3.2e-2)];
+        assert_eq!(answers(&one), [Answer { error: 3.2e-2, record: 0 }]);
+        let two = [record(1, 1.0, 1.0, 9e-2), record(2, 1.0, 2.0, 7e-2)];
+        let found: Vec<(f64, usize)> = answers(&two).iter().map(|a| (a.error, a.record)).collect();
+        assert_eq!(found, [(9e-2, 0), (7e-2, 1)]);
+        assert_eq!(answers(&[]), []);
+    }
+
+    #[test]
+    fn an_error_below_that_of_the_reference_counts_as_its_bound() {
+        let mut all = records();
+        // 1e-9 away from a reference that is 5e-4 off.
+        all[3].judge(Some(1e-9), Some(5e-4));
+        assert_eq!((all[3].error(), all[3].bound().unwrap()), (None, 5e-4 + 1e-9));
+        // Rounded up: 5.0e-4 would not be true.
+        assert_eq!(all[3].error_words(), "< 5.1e-4");
+        assert_eq!(front(&all), [0, 2, 3]);
+        assert!(answers(&all).iter().all(|answer| answer.error > 5e-4));
+        // As far away as the reference is off: an error.
+        all[3].judge(Some(5e-4), Some(5e-4));
+        assert_eq!((all[3].error(), all[3].below), (Some(5e-4), None));
     }
 
     #[test]

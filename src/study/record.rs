@@ -52,8 +52,12 @@ pub struct Record {
     pub quantities: Vec<Measured>,
     /// Their errors, as far as the meshes of the series tell them: relative, or the value of a quantity that is an error itself.
     pub quantity_errors: Vec<Option<f64>>,
+    /// The estimated errors of what `errors` are taken against, standard and in L1, where they are known.
+    pub floor: Option<[f64; 2]>,
     /// The error by the measure of the study, where it is known.
     pub error: Option<f64>,
+    /// Where the run is as near to the reference as this is to what is exact, no error is known; it is below this.
+    pub below: Option<f64>,
     /// `done`, or why it did not get there.
     pub status: String,
     /// What earlier records had let expect.
@@ -64,6 +68,27 @@ impl Record {
     /// The error by the measure of the study, of a run that went well.
     pub fn error(&self) -> Option<f64> {
         self.error
+    }
+
+    /// The error, or what it is below.
+    pub fn bound(&self) -> Option<f64> {
+        self.error.or(self.below)
+    }
+
+    /// The error in words: `6.31e-3`, or `< 2.1e-5` (rounded up) where it is below that of the reference.
+    pub fn error_words(&self) -> String {
+        match (self.error, self.below) {
+            (Some(error), _) if error.is_finite() => format!("{error:.2e}"),
+            (_, Some(below)) => format!("< {:.1e}", rounded_up(below)),
+            _ => "-".to_owned(),
+        }
+    }
+
+    /// Sets the error by the measure from the distance to the reference, whose own error may be known.
+    pub(super) fn judge(&mut self, distance: Option<f64>, own: Option<f64>) {
+        // The distance of a run that is nearer tells of the reference. By the triangle both together are a bound.
+        let below = distance.zip(own).and_then(|(distance, own)| (distance < own).then_some(distance + own));
+        (self.error, self.below) = (if below.is_some() { None } else { distance }, below);
     }
 
     /// Whether the run got to its end.
@@ -90,11 +115,19 @@ impl Record {
             errors: None,
             quantities: vec![],
             quantity_errors: vec![],
+            floor: None,
             error: None,
+            below: None,
             status,
             predicted: None,
         }
     }
+}
+
+/// A number above 0 to two digits, not less than it is.
+fn rounded_up(x: f64) -> f64 {
+    let unit = 10_f64.powf(x.log10().floor() - 1.0);
+    (x / unit).ceil() * unit
 }
 
 /// Builds, runs and compares.
@@ -122,7 +155,11 @@ pub(super) fn measure(
             Err(Stop::Interrupted) => return Err(Error::Interrupted("in a study; its table is kept".into())),
             Err(Stop::Output(why)) => return Err(why),
             Err(stop @ (Stop::Unstable(_) | Stop::EnergyMade(_))) => {
-                let status = format!("unstable: {}", why(&stop));
+                let culprit = if let Stop::Unstable(loss) = &stop { built.culprit(loss) } else { None };
+                let status = match culprit {
+                    Some(culprit) => format!("bad input: {}", culprit.what),
+                    None => format!("unstable: {}", why(&stop)),
+                };
                 return Ok(Record { predicted, ..Record::new(case, sizes, &Report::default(), status) });
             }
         }
@@ -134,5 +171,5 @@ pub(super) fn measure(
     let errors = reference.errors(&built, &state);
     let (quantity_errors, h) = (vec![None; quantities.len()], built.body.mesh.smallest_h());
     let record = Record::new(case, sizes, &report, DONE.into());
-    Ok(Record { predicted, h, errors, quantities, quantity_errors, ..record })
+    Ok(Record { predicted, h, errors, quantities, quantity_errors, floor: reference.own_errors(), ..record })
 }

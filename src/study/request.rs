@@ -66,13 +66,13 @@ impl Request {
             let what = "a study compares runs on one grid each, and the scene has [[regrid]]";
             return Err(scene.error("regrid", what, "leave them out by --set regrid=[]"));
         }
-        let (aim, series, refinements) = (self.aim()?, self.series(scene)?, self.refinements(scene)?);
+        let (aim, (series, notes), refinements) = (self.aim()?, self.series(scene)?, self.refinements(scene)?);
         let measure = if self.measure.is_empty() { MEASURES[0] } else { &self.measure };
         let measure = Measure::named(measure, scene)?;
         // Quantities are extrapolated: a reference run is made for them only where it is asked for.
         let asked = measure.needs_reference() || !self.reference.is_empty();
         let reference = self.reference(&refinements)?;
-        Ok(Plan { series, refinements, aim, measure, reference: asked.then_some(reference) })
+        Ok(Plan { series, refinements, aim, measure, reference: asked.then_some(reference), notes })
     }
 
     fn aim(&self) -> Result<Option<Aim>> {
@@ -160,7 +160,8 @@ impl Request {
         Ok(all)
     }
 
-    fn series(&self, scene: &Scene) -> Result<Vec<Series>> {
+    /// All series, and a line for each method and degree in which a compared key has no effect.
+    fn series(&self, scene: &Scene) -> Result<(Vec<Series>, Vec<String>)> {
         let (mut all, compared) = (Vec::new(), self.compared()?);
         for name in &self.methods {
             let Some(method) = Method::named(name) else {
@@ -182,9 +183,22 @@ impl Request {
             }
         }
         // A misspelt layout or a degree beyond the range is an error of the request, not of one case.
+        let mut notes = Vec::new();
         for series in &all {
-            scene.with(&Case { series: series.clone(), refinement: 1.0 }.sets(scene))?.settings()?;
+            let scene = scene.with(&Case { series: series.clone(), refinement: 1.0 }.sets(scene))?;
+            scene.settings()?;
+            notes.extend(without_effect(&scene, series));
         }
-        Ok(all)
+        notes.dedup();
+        Ok((all, notes))
     }
+}
+
+/// The compared keys that have no effect in a series, a line each.
+fn without_effect(scene: &Scene, series: &Series) -> Vec<String> {
+    let keys: Vec<&str> = series.sets.iter().filter_map(|set| Some(set.split_once('=')?.0)).collect();
+    let own = |key: &str| keys.iter().any(|known| key == *known || key.starts_with(&format!("{known}.")));
+    let all = scene.without_effect().into_iter().filter(|(key, _)| own(key));
+    let name = Series { sets: Vec::new(), ..series.clone() }.name();
+    all.map(|(key, why)| format!("note: --compare {key} has no effect on {name}: {why}")).collect()
 }

@@ -12,7 +12,7 @@ use super::table::{self, csv, machine};
 use super::words::{answer, line, title};
 use super::{SHORT, Study, trend};
 use crate::error::{Error, Result};
-use crate::format::short_seconds;
+use crate::format::{count, shell, short_seconds};
 use crate::io::pending::write_text;
 use crate::lane::Kernel;
 use crate::scene::Scene;
@@ -43,6 +43,8 @@ pub struct Plan {
     pub measure: Measure,
     /// Degree and refinement of the reference run, where no exact solution is known; none: no reference run.
     pub reference: Option<(usize, f64)>,
+    /// What of it says nothing, a line each.
+    pub notes: Vec<String>,
 }
 
 /// The plots, and the names of their files.
@@ -86,10 +88,14 @@ impl<'a> Session<'a> {
         };
         let head = vec![
             format!("problem: {}", scene.title),
-            format!("error: {}, against {}", plan.measure.label(), plan.measure.against(&reference.words())),
+            format!(
+                "error: {}, against {}",
+                plan.measure.label(),
+                plan.measure.against(&reference.words(&plan.measure))
+            ),
             format!("machine: {}", machine(Kernel::widest())),
         ];
-        head.iter().for_each(|line| say(line));
+        head.iter().chain(&plan.notes).for_each(|line| say(line));
         let (cells, h) = (mesh.cells.len(), mesh.smallest_h());
         let measure = plan.measure.clone();
         let study = Study { scene, cells, h, reference, measure, records: vec![], repeat, interrupt: &NEVER };
@@ -186,8 +192,9 @@ impl Session<'_> {
             }));
             if met {
                 let sets = record.case.sets(self.study.scene);
-                let sets: Vec<String> = sets.iter().map(|set| format!("--set '{set}'")).collect();
-                self.say(format!("run it by: dgmpm run {} {}", self.study.scene.path().display(), sets.join(" ")));
+                let sets: Vec<String> = sets.iter().map(|set| format!("--set {}", shell(set))).collect();
+                let scene = shell(self.study.scene.path().display());
+                self.say(format!("run it by: dgmpm run {scene} {}", sets.join(" ")));
                 return Ok(tries);
             }
             self.say("not met");
@@ -210,7 +217,7 @@ impl Session<'_> {
                 let least = if self.plan.measure.needs_reference() { 2 } else { 3 };
                 let most = if level < least { 10.0 * budget } else { budget };
                 let dear = model.is_some_and(|m| m.at(self.study.size(&case)).cpu > most);
-                let beyond = |r: &Record| matches!((aim, r.error()), (Aim::Error(aim), Some(e)) if e < aim);
+                let beyond = |r: &Record| matches!((aim, r.bound()), (Aim::Error(aim), Some(e)) if e < aim);
                 if dear || level >= least && self.study.records.iter().any(|r| r.case.series == series && beyond(r)) {
                     break;
                 }
@@ -253,7 +260,8 @@ impl Session<'_> {
         let name = format!("{} with refinement {:.4}", choice.case.series.name(), choice.case.refinement);
         self.say(format!("choice: {name}: predicted {}, error {error:.2e}", short_seconds(cpu)));
         let record = self.measure(choice.case.clone())?;
-        let Some(found) = record.error() else {
+        // What the error is below may be enough.
+        let Some(found) = record.bound() else {
             let what = match record.is_done() {
                 true => format!("the error of the chosen setting is not known: {}", self.doubt(&record.case.series)),
                 false => format!("the chosen setting does not run: {}", record.status),
@@ -261,7 +269,7 @@ impl Session<'_> {
             return Err(Error::input(what, "give other --degrees or --refine"));
         };
         let took = format!("{} (predicted {})", short_seconds(record.cpu), short_seconds(cpu));
-        self.say(format!("result: {took}, error {found:.2e} (predicted {error:.2e})"));
+        self.say(format!("result: {took}, error {} (predicted {error:.2e})", record.error_words()));
         Ok((record, found))
     }
 
@@ -269,7 +277,7 @@ impl Session<'_> {
     fn finish(self, tries: Vec<Value>) -> Result<()> {
         let (records, measure, scene) = (&self.study.records, &self.plan.measure, self.study.scene);
         let answers = answers(records);
-        self.say("cheapest by error:");
+        self.say(if answers.is_empty() { "cheapest by error: no run has a known error" } else { "cheapest by error:" });
         answers.iter().for_each(|a| self.say(answer(measure, a.error, &records[a.record])));
         let comparisons = compared(records);
         comparisons.iter().for_each(|comparison| self.say(comparison.line()));
@@ -281,6 +289,7 @@ impl Session<'_> {
                 "cells": r.cells,
                 "cpu_seconds": r.cpu,
                 "error": r.error(),
+                "error_below": r.below,
             })
         };
         let words = answers.iter().map(|a| json!({"for_error": a.error, "use": setting(&records[a.record])}));
@@ -288,11 +297,12 @@ impl Session<'_> {
             "title": scene.title,
             "head": self.head,
             "measure": measure.name(),
-            "reference_error": self.study.reference.error(),
+            "reference_error": self.study.reference.error(measure),
             "answers": words.collect::<Vec<_>>(),
             "front": front(records).into_iter().map(|k| setting(&records[k])).collect::<Vec<_>>(),
             "quantities": trend::json(records, scene),
             "compared": comparisons,
+            "notes": self.plan.notes,
             "tries": tries,
         });
         write_text(&self.out.join("study.csv"), &self.csv())?;
@@ -355,13 +365,25 @@ impl Session<'_> {
         Error::input(what, "give finer meshes by --refine, other --degrees, or another --measure")
     }
 
-    /// A result whose error is not far above that of the reference says little.
+    /// A result whose error is not far above that of the reference says little, and one below it nothing.
     fn doubt_reference(&self, records: &[Record]) {
+        let below = count(records.iter().filter(|r| r.below.is_some()).count(), "run");
+        let is_below = records.iter().any(|r| r.below.is_some());
         if !self.plan.measure.needs_reference() {
+            if is_below {
+                let what =
+                    format!("note: {below} met the extrapolated limit more closely than the finest mesh, by chance");
+                self.say(format!("{what}: they are `<` that error. Finer meshes by --refine tell more"));
+            }
             return;
         }
+        if let (true, Some(own)) = (is_below, self.study.reference.error(&self.plan.measure)) {
+            let what = format!("note: {below} came nearer to the reference than its own error, about {own:.1e}");
+            self.say(format!("{what}: their errors are not known, only that they are `<` what stands in the table"));
+            return self.say("  give a finer --reference DEGREE,REFINEMENT to see them");
+        }
         let smallest = records.iter().filter_map(Record::error).fold(f64::INFINITY, f64::min);
-        let own = self.study.reference.error();
+        let own = self.study.reference.error(&self.plan.measure);
         if own.is_none_or(|own| own > 0.3 * smallest) {
             let own = own.map_or("not known".to_owned(), |own| format!("about {own:.1e}"));
             let what =

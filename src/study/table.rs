@@ -10,9 +10,10 @@ use crate::scene::Quantity;
 use std::fmt::Write;
 
 /// Columns of `study.csv`. Errors are of F, v (m/s), P (Pa) at the end of the run; times in s, memory in MiB; `predicted_*`
-/// is what the coarser meshes of the series had let expect, by the measure of the study. Behind them stand `quantity_NAME` and
+/// is what the coarser meshes of the series had let expect, by the measure of the study. An error below that of the reference is left
+/// out; `error_below` is what the error by the measure is below then, and the norms are distances from the reference. Behind them stand `quantity_NAME` and
 /// `quantity_NAME_error` for each quantity of the scene.
-pub const COLUMNS: [&str; 28] = [
+pub const COLUMNS: [&str; 29] = [
     "method",
     "degree",
     "time_degree",
@@ -41,6 +42,7 @@ pub const COLUMNS: [&str; 28] = [
     "piola_linf",
     "predicted_error",
     "predicted_cpu_seconds",
+    "error_below",
 ];
 
 /// The machine, in one line.
@@ -73,7 +75,9 @@ pub fn csv(records: &[Record], quantities: &[Quantity], head: &[String]) -> Stri
         row.extend([r.cpu, r.wall, r.memory, r.peak].map(|x| format!("{x:.6}")));
         match &r.errors {
             Some(errors) => {
-                row.extend([errors.standard, errors.standard_l1].map(|error| format!("{error:e}")));
+                let floor = r.floor.unwrap_or_default();
+                let of = |error: f64, own: f64| if error < own { String::new() } else { format!("{error:e}") };
+                row.extend([of(errors.standard, floor[0]), of(errors.standard_l1, floor[1])]);
                 let norms = errors.fields().into_iter().flat_map(|(_, n)| [n.l1, n.l2, n.linf]);
                 row.extend(norms.map(|norm| format!("{norm:e}")));
             }
@@ -83,6 +87,7 @@ pub fn csv(records: &[Record], quantities: &[Quantity], head: &[String]) -> Stri
             Some(p) => row.extend([number(Some(p.error)), format!("{:.6}", p.cpu)]),
             None => row.extend([String::new(), String::new()]),
         }
+        row.push(number(r.below));
         for k in 0..quantities.len() {
             row.push(number(r.quantities.get(k).map(|quantity| quantity.value)));
             row.push(number(r.quantity_errors.get(k).copied().flatten()));
@@ -113,7 +118,7 @@ fn number(value: Option<f64>) -> String {
 /// bold.
 pub fn markdown(records: &[Record], measure: &Measure) -> String {
     let mut series = series_of(records);
-    series.retain(|one| records.iter().any(|r| r.case.series == **one && r.error().is_some()));
+    series.retain(|one| records.iter().any(|r| r.case.series == **one && r.bound().is_some()));
     let errors: Vec<f64> = answers(records).iter().map(|answer| answer.error).collect();
     let mut text = String::from("| CPU s for an error of |");
     errors.iter().for_each(|e| text += &format!(" {} |", measure.words(*e)));

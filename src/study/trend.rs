@@ -81,6 +81,11 @@ impl Trend {
     pub fn error(&self) -> Option<f64> {
         self.limit.error(self.values.last()?.1)
     }
+
+    /// The error that an extrapolated limit may have itself: at most that of the finest mesh. None of other limits.
+    fn doubt(&self) -> Option<f64> {
+        matches!(self.limit, Limit::Extrapolated(Ok(Estimate { order: Some(_), .. }))).then(|| self.error()).flatten()
+    }
 }
 
 /// The series of records, each once, in their order.
@@ -105,15 +110,21 @@ pub fn rate(records: &mut [Record], series: &Series, scene: &Scene, measure: &Me
     for (number, quantity) in scene.quantities.iter().enumerate() {
         let Some(trend) = Trend::of(records, series, number, quantity.what.build()) else { continue };
         for record in records.iter_mut().filter(|r| r.case.series == *series && r.is_done()) {
-            record.quantity_errors[number] = trend.limit.error(record.quantities[number].value);
+            let error = trend.limit.error(record.quantities[number].value);
+            if matches!(measure, Measure::Quantity { number: own, .. } if *own == number) {
+                record.judge(error, trend.doubt());
+            }
+            // A value that is nearer to the limit than the finest mesh meets it by chance.
+            let known = trend.doubt().is_none_or(|own| error.is_none_or(|error| error >= own));
+            record.quantity_errors[number] = error.filter(|_| known);
         }
     }
     for record in records.iter_mut().filter(|r| r.case.series == *series && r.is_done()) {
-        record.error = match measure {
-            Measure::Standard => record.errors.map(|errors| errors.standard),
-            Measure::L1 => record.errors.map(|errors| errors.standard_l1),
-            Measure::Quantity { number, .. } => record.quantity_errors[*number],
-        };
+        match measure {
+            Measure::Standard => record.judge(record.errors.map(|e| e.standard), record.floor.map(|floor| floor[0])),
+            Measure::L1 => record.judge(record.errors.map(|e| e.standard_l1), record.floor.map(|floor| floor[1])),
+            Measure::Quantity { .. } => {}
+        }
     }
 }
 

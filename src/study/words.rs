@@ -19,7 +19,7 @@ pub fn line(r: &Record) -> String {
         return format!("  {name:<28} {}", r.status);
     }
     let of = |error: f64| if error.is_finite() { format!("{error:.2e}") } else { "-".to_owned() };
-    let error = of(r.error().unwrap_or(f64::NAN));
+    let error = r.error_words();
     let predicted = r.predicted.map_or(String::new(), |p| format!("{:.3}, {}", p.cpu, of(p.error)));
     format!(
         "  {name:<28} {:>7} {:>8} {:>7} {:>10.3} {:>8.1} {error:>10}   {predicted}",
@@ -30,7 +30,6 @@ pub fn line(r: &Record) -> String {
 /// `for an error of 1 % use rk-dgfem S3 on 60 cells: 180.2 ms (error 6.31e-3)`.
 pub fn answer(measure: &Measure, error: f64, record: &Record) -> String {
     let (name, cells) = (record.case.series.name(), count(record.cells, "cell"));
-    let found = record.error().unwrap_or(f64::NAN);
-    let error = measure.words(error);
-    format!("  for an error of {error:<8} use {name} on {cells}: {} (error {found:.2e})", short_seconds(record.cpu))
+    let (error, found) = (measure.words(error), record.error_words());
+    format!("  for an error of {error:<8} use {name} on {cells}: {} (error {found})", short_seconds(record.cpu))
 }

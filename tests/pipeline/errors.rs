@@ -187,3 +187,57 @@ fn export_refuses_what_is_no_whole_run() {
     damage(&bench, "runs/case/mesh.h5");
     assert!(bench.fail(2, "export runs/case").contains("mesh.h5: the file is damaged"));
 }
+
+#[test]
+fn a_file_in_the_place_of_a_folder_of_results_is_bad_input() {
+    let bench = Bench::new();
+    bench.run("run case.toml");
+    bench.write("mine", "of the user");
+    for command in [
+        "run case.toml --out mine",
+        "run case.toml --out mine/below/run",
+        "run case.toml --out mine --force",
+        "solve case.toml --out mine",
+        "study case.toml --out mine",
+        "plot runs/case --out mine",
+        "bench --all mine",
+        "mesh rectangle --size 1,1 --cells 2,2 --out mine/a.h5",
+    ] {
+        let message = bench.fail(2, command);
+        assert!(message.contains("mine is no folder, and results go into a folder"), "{command}: {message}");
+        assert!(message.contains("another folder by --out"), "{command}: {message}");
+    }
+    assert_eq!(bench.read("mine"), "of the user");
+}
+
+#[test]
+fn a_series_for_paraview_is_no_mesh_and_info_tells_its_times() {
+    let bench = Bench::new();
+    bench.run("run case.toml");
+    bench.run("export runs/case --format vtu,vtkhdf");
+    for (file, what, own) in [
+        ("grid.vtkhdf", "this is a VTKHDF file", "save it as .vtu"),
+        ("grid.pvd", "a list of the .vtu files of a series", "one of the .vtu files that it names"),
+    ] {
+        let message = bench.fail(2, &format!("mesh runs/case/export/{file} --out a.h5"));
+        assert!(message.contains(what) && message.contains(own), "{message}");
+        assert!([".msh", ".vtu", ".xdmf", "mesh.h5"].iter().all(|known| message.contains(known)), "{message}");
+    }
+    let times = bench.snapshots("runs/case").iter().map(|state| state.time).collect::<Vec<_>>();
+    let told: serde_json::Value = serde_json::from_str(&bench.run("info runs/case/export/grid.vtkhdf --json")).unwrap();
+    assert_eq!(told["times"].as_u64(), Some(times.len() as u64), "{told}");
+    let ends = [times[0], times[times.len() - 1]];
+    assert_eq!(told["t_from_to_s"], serde_json::json!(ends));
+}
+
+#[test]
+fn the_commands_that_a_first_scene_prints_can_be_pasted_where_paths_have_blanks() {
+    let bench = Bench::empty();
+    std::fs::create_dir(bench.path("my plates")).unwrap();
+    bench.run("mesh rectangle --size 1,1 --cells 2,2 --out plate.h5");
+    std::fs::rename(bench.path("plate.h5"), bench.path("my plates/the plate.h5")).unwrap();
+    let output = bench.command("new").arg("my plates/the plate.h5").output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let commands: Vec<&str> = said.lines().filter_map(|line| line.strip_prefix("  dgmpm ")).collect();
+    assert_eq!(commands, ["run 'my plates/the plate.toml'", "plot 'runs/the plate'"], "{said}");
+}

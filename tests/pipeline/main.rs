@@ -3,6 +3,7 @@
 mod clouds;
 mod common;
 mod errors;
+mod fields;
 mod notices;
 mod regrid;
 mod stages;

@@ -1,4 +1,5 @@
-"""Writes a mesh of Gmsh by meshio and VTK, in each mode of VTU and XDMF that they have. The test compares what dgmpm reads with the mesh.
+"""Writes a mesh of Gmsh, with fields at its nodes, by meshio, meshlane (its fork) and VTK, in each mode of VTU, XDMF.
+The test compares what dgmpm reads with the mesh and the fields.
 
 Usage: mesh_files.py MESH FOLDER
 """
@@ -6,26 +7,37 @@ import sys
 from pathlib import Path
 
 import meshio
+import meshlane
 import numpy as np
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
 
-def by_meshio(mesh, folder):
-    """All modes of meshio; its text of VTU has 12 digits only."""
-    meshio.vtu.write(folder / "text_12_digits.vtu", mesh, binary=False)
+def fields(points):
+    """Vectors at the nodes, of two and of three numbers, which the test makes again to the bit."""
+    x, y = points[:, 0], points[:, 1]
+    return {"velocity": np.stack([2 * x, -y], axis=1), "displacement": np.stack([0.5 * x, 0.25 * y, 0 * x], axis=1)}
+
+
+def by_meshio(library, path, folder):
+    """All modes of meshio, or of a fork with its interface; its text of VTU may have 12 digits only."""
+    mesh, name = library.read(path), library.__name__
+    mesh.point_data = fields(mesh.points)
+    # meshio 5.3.5 fails where it makes numbers of these for VTU.
+    mesh.cell_sets = {}
+    library.vtu.write(folder / f"{name}_text.vtu", mesh, binary=False)
     for compression in ("none", "zlib", "lzma"):
         for header in ("UInt32", "UInt64"):
             options = {"compression": None if compression == "none" else compression, "header_type": header}
-            meshio.vtu.write(folder / f"meshio_{compression}_{header}.vtu", mesh, binary=True, **options)
+            library.vtu.write(folder / f"{name}_{compression}_{header}.vtu", mesh, binary=True, **options)
     for kind in ("HDF", "XML"):
-        meshio.xdmf.write(folder / f"meshio_{kind}.xdmf", mesh, data_format=kind)
+        library.xdmf.write(folder / f"{name}_{kind}.xdmf", mesh, data_format=kind)
     # As the tutorials of DOLFINx say: cells and facets in two files.
-    for name, kind, plane in (("cells", "quad", True), ("facets", "line", False)):
+    for part, kind, plane in (("cells", "quad", True), ("facets", "line", False)):
         points = mesh.points[:, :2] if plane else mesh.points
         tags = mesh.get_cell_data("gmsh:physical", kind)
-        part = meshio.Mesh(points, {kind: mesh.get_cells_type(kind)}, cell_data={"name_to_read": [tags]})
-        meshio.write(folder / f"{name}.xdmf", part)
+        part_mesh = library.Mesh(points, {kind: mesh.get_cells_type(kind)}, cell_data={"name_to_read": [tags]})
+        library.write(folder / f"{name}_{part}.xdmf", part_mesh)
 
 
 def grid_of(mesh):
@@ -42,6 +54,10 @@ def grid_of(mesh):
     tags = numpy_to_vtk(np.concatenate(mesh.cell_data["gmsh:physical"]).astype(np.int32), deep=True)
     tags.SetName("gmsh:physical")
     grid.GetCellData().AddArray(tags)
+    for name, values in fields(mesh.points).items():
+        array = numpy_to_vtk(values, deep=True)
+        array.SetName(name)
+        grid.GetPointData().AddArray(array)
     for name, pair in mesh.field_data.items():
         array = numpy_to_vtk(np.asarray(pair, np.int64), deep=True)
         array.SetName(name)
@@ -73,10 +89,9 @@ def by_vtk(mesh, folder):
 
 
 def main(path, folder):
+    for library in (meshio, meshlane):
+        by_meshio(library, path, folder)
     mesh = meshio.read(path)
-    # meshio 5.3.5 fails where it makes numbers of these for VTU.
-    mesh.cell_sets = {}
-    by_meshio(mesh, folder)
     by_vtk(mesh, folder)
     print(f"{len(list(folder.glob('*.vtu')))} .vtu and {len(list(folder.glob('*.xdmf')))} .xdmf files")
 

@@ -1,4 +1,4 @@
-"""Reads every exported file of a folder by meshio, VTK (pyvista) and h5py; all must give the same bits.
+"""Reads every exported file of a folder by meshio, meshlane (its fork), VTK (pyvista) and h5py; all must give the same bits.
 
 Usage: test_readers.py FOLDER      (written by tests/python_readers.rs, with the raw values beside the files)
 Prints one line per check; exits with 1 if any failed. Leaves FOLDER/results.npz for dolfinx_mesh.py.
@@ -8,10 +8,10 @@ from pathlib import Path
 
 import h5py
 import meshio
+import meshlane
 import numpy as np
 import pyvista
 import vtk
-from meshio.xdmf import TimeSeriesReader
 from vtk.util.numpy_support import vtk_to_numpy
 
 FAILED = []
@@ -45,30 +45,31 @@ def total_area(grid):
 
 
 def check_vtu(path, expected, degree, is_grid):
-    """One .vtu by meshio and by VTK against the raw values."""
+    """One .vtu by meshio, meshlane and VTK against the raw values."""
     name = f"{path.parent.parent.name}/{path.name}"
     points = raw(expected / "points.f64").reshape(-1, 3)
     fields = raw_fields(expected / "point", len(points))
     per_cell = (max(degree, 1) + 1) ** 2 if is_grid else 1
     cells = len(points) // per_cell
     cell_fields = raw_fields(expected / "cell", cells) if is_grid else {}
-    by_vtk, by_meshio = pyvista.read(path), meshio.read(path)
+    by_vtk, by_meshio, by_meshlane = pyvista.read(path), meshio.read(path), meshlane.read(path)
+    python = (by_meshio, by_meshlane)
     kind = (9 if degree <= 1 else 70) if is_grid else 1
     check(f"{name}: VTK cells of type {kind}", by_vtk.n_cells == cells and set(by_vtk.celltypes) == {kind})
-    check(f"{name}: meshio cells", sum(len(b.data) for b in by_meshio.cells) == cells)
+    check(f"{name}: meshio, meshlane cells", all(sum(len(b.data) for b in mesh.cells) == cells for mesh in python))
     owned = np.arange(len(points)).reshape(cells, per_cell)
     check(f"{name}: each cell owns its points", np.array_equal(by_vtk.cell_connectivity.reshape(owned.shape), owned)
-          and np.array_equal(np.sort(np.vstack([b.data for b in by_meshio.cells]), axis=1), owned))
-    check(f"{name}: points", same_bits(by_vtk.points, points) and same_bits(by_meshio.points, points))
-    check(f"{name}: names of fields", set(by_vtk.point_data) == set(fields) == set(by_meshio.point_data)
-          and set(by_vtk.cell_data) == set(cell_fields) == set(by_meshio.cell_data))
+          and all(np.array_equal(np.sort(np.vstack([b.data for b in mesh.cells]), axis=1), owned) for mesh in python))
+    check(f"{name}: points", all(same_bits(mesh.points, points) for mesh in (by_vtk, *python)))
+    check(f"{name}: names of fields", all(set(mesh.point_data) == set(fields) and set(mesh.cell_data) == set(cell_fields)
+                                          for mesh in (by_vtk, *python)))
     for key, values in fields.items():
-        good = same_bits(by_vtk.point_data[key], values) and same_bits(by_meshio.point_data[key], values)
-        check(f"{name}: point field {key}, VTK = meshio = raw", good)
+        good = all(same_bits(mesh.point_data[key], values) for mesh in (by_vtk, *python))
+        check(f"{name}: point field {key}, VTK = meshio = meshlane = raw", good)
     for key, values in cell_fields.items():
-        by_block = np.concatenate(by_meshio.cell_data[key])
-        good = same_bits(by_vtk.cell_data[key], values) and same_bits(by_block, values)
-        check(f"{name}: cell field {key}, VTK = meshio = raw", good)
+        by_block = [np.concatenate(mesh.cell_data[key]) for mesh in python]
+        good = all(same_bits(found, values) for found in (by_vtk.cell_data[key], *by_block))
+        check(f"{name}: cell field {key}, VTK = meshio = meshlane = raw", good)
     if is_grid:
         check_order(name, by_vtk, degree)
 
@@ -121,12 +122,16 @@ def vtk_series(path):
 
 
 def check_xdmf(folder, degree, times):
-    """The series by meshio, VTK and h5py; the order of points is that of the .vtu."""
+    """The series by meshio, meshlane, VTK and h5py; the order of points is that of the .vtu."""
     path, name, n = folder / "series.xdmf", f"{folder.name}/series.xdmf", max(degree, 1)
     by_vtk = list(vtk_series(path))
     check(f"{name}: times by VTK", [t for t, _ in by_vtk] == list(times))
-    with TimeSeriesReader(path) as reader, h5py.File(path.with_suffix(".h5")) as h5:
+    with (meshio.xdmf.TimeSeriesReader(path) as reader, meshlane.xdmf.TimeSeriesReader(path) as lane,
+          h5py.File(path.with_suffix(".h5")) as h5):
         points, cells = reader.read_points_cells()
+        lane_points, lane_cells = lane.read_points_cells()
+        check(f"{name}: mesh by meshlane", same_bits(lane_points, points)
+              and np.array_equal(lane_cells[0].data, cells[0].data))
         expected_points = raw(folder / "raw/0/grid/points.f64").reshape(-1, 3)
         quads = cells[0].data
         check(f"{name}: points", same_bits(points, expected_points[:, :2]) and same_bits(h5["mesh/geometry"], points)
@@ -137,16 +142,18 @@ def check_xdmf(folder, degree, times):
         check(f"{name}: areas positive, sum 3", *[(a > 0).all() and abs(a.sum() - 3) < 1e-12 for a in [areas(points, quads)]])
         for k, time in enumerate(times):
             t, point_data, cell_data = reader.read_data(k)
+            lane_t, lane_point_data, lane_cell_data = lane.read_data(k)
             data = by_vtk[k][1]
-            check(f"{name}: time {k} by meshio", t == time)
+            check(f"{name}: time {k} by meshio, meshlane", t == time == lane_t)
             for key, values in raw_fields(folder / f"raw/{k}/grid/point", len(points)).items():
                 stored = h5[f"step{k:06}/point/{key}"]
-                good = all(same_bits(v, values) for v in (point_data[key], stored, data.point_data[key]))
-                check(f"{name}: point field {key} at {k}, meshio = h5py = VTK = raw", good)
+                good = all(same_bits(v, values) for v in (point_data[key], lane_point_data[key], stored, data.point_data[key]))
+                check(f"{name}: point field {key} at {k}, meshio = meshlane = h5py = VTK = raw", good)
             for key, values in raw_fields(folder / f"raw/{k}/grid/cell", whole).items():
                 values = np.repeat(values, n * n, axis=0)
-                good = same_bits(np.concatenate(cell_data[key]), values) and same_bits(data.cell_data[key], values)
-                check(f"{name}: cell field {key} at {k}, meshio = VTK = raw", good)
+                by_python = [np.concatenate(found[key]) for found in (cell_data, lane_cell_data)]
+                good = all(same_bits(found, values) for found in (data.cell_data[key], *by_python))
+                check(f"{name}: cell field {key} at {k}, meshio = meshlane = VTK = raw", good)
         return points, quads, reader.read_data(len(times) - 1)[1]["velocity"]
 
 
@@ -156,11 +163,13 @@ def areas(points, quads):
 
 
 def check_mesh(folder):
-    """The bilinear mesh by meshio and VTK."""
-    mesh = meshio.read(folder / "mesh.xdmf")
+    """The bilinear mesh by meshio, meshlane and VTK."""
+    mesh, lane = meshio.read(folder / "mesh.xdmf"), meshlane.read(folder / "mesh.xdmf")
     nodes = raw(folder / "pipeline/nodes.f64").reshape(-1, 2)
     quads = mesh.cells_dict["quad"]
-    check("mesh.xdmf: nodes by meshio", same_bits(mesh.points[:, :2], nodes))
+    check("mesh.xdmf: nodes by meshio, meshlane", all(same_bits(one.points[:, :2], nodes) for one in (mesh, lane)))
+    check("mesh.xdmf: cells by meshlane = meshio", np.array_equal(lane.cells_dict["quad"], quads)
+          and np.array_equal(lane.cell_data["group"][0].ravel(), mesh.cell_data["group"][0].ravel()))
     check("mesh.xdmf: counter-clockwise, area 3", (areas(nodes, quads) > 0).all() and abs(areas(nodes, quads).sum() - 3) < 1e-12)
     group = mesh.cell_data["group"][0].ravel()
     reader = vtk.vtkXdmfReader()
@@ -170,8 +179,9 @@ def check_mesh(folder):
     by_vtk = by_vtk[0] if isinstance(by_vtk, pyvista.MultiBlock) else by_vtk
     check("mesh.xdmf: VTK = meshio", np.array_equal(by_vtk.cell_connectivity.reshape(-1, 4), quads)
           and np.array_equal(vtk_to_numpy(by_vtk.GetCellData().GetArray("group")), group))
-    edges = meshio.read(folder / "boundary.xdmf")
-    check("boundary.xdmf: 14 edges", sum(len(b.data) for b in edges.cells) == 14)
+    for library in (meshio, meshlane):
+        edges = library.read(folder / "boundary.xdmf")
+        check(f"boundary.xdmf: 14 edges by {library.__name__}", sum(len(b.data) for b in edges.cells) == 14)
     return nodes, quads, group
 
 
@@ -210,7 +220,7 @@ def main(folder):
     results["nodes"], results["cells"], results["group"] = check_mesh(folder)
     check_pipeline(folder / "pipeline")
     np.savez(folder / "results.npz", **results)
-    versions = f"meshio {meshio.__version__}, pyvista {pyvista.__version__}, VTK {vtk.vtkVersion().GetVTKVersion()}, h5py {h5py.__version__}"
+    versions = f"meshio {meshio.__version__}, meshlane {meshlane.__version__}, pyvista {pyvista.__version__}, VTK {vtk.vtkVersion().GetVTKVersion()}, h5py {h5py.__version__}"
     print(f"{versions}: {len(FAILED)} failed")
     return 1 if FAILED else 0
 

@@ -6,6 +6,7 @@ use super::print::{answer, say};
 use super::threads;
 use crate::bench::{self, Campaign, Domain, Figures, Length, Setup};
 use crate::error::{Error, Result};
+use crate::file::check_place_of_folder;
 use crate::lane::Kernel;
 use crate::registry::Method;
 
@@ -15,6 +16,7 @@ pub use args::Args;
 pub fn run(args: &Args) -> Result<()> {
     let kernel = threads::kernel(args.kernel.as_deref())?;
     if let Some(out) = &args.all {
+        check_place_of_folder(out)?;
         return Campaign { kernel, out: out.clone(), mesh: args.mesh.clone(), say: &|text| say(text) }.run();
     }
     threads::check_threads(args.threads)?;

@@ -5,6 +5,7 @@ mod format;
 
 use super::print::{note, say};
 use crate::error::{Error, Result};
+use crate::file::check_place_of_folder;
 use crate::format::count;
 use crate::picture::{Maps, curves};
 use crate::run::Folder;
@@ -16,6 +17,7 @@ pub use args::Args;
 pub fn run(args: &Args) -> Result<()> {
     let folder = Folder::new(&args.run);
     let out = args.out.clone().unwrap_or_else(|| folder.plots());
+    check_place_of_folder(&out)?;
     let ending = args.format.ending();
     let mut files: Vec<PathBuf> = Vec::new();
     match Maps::new(&folder, &args.field, args.when(), args.range()?) {

@@ -16,6 +16,10 @@ const BOUNDARY: &str = "boundary";
 /// The data of an export of this program that have the numbers of cells in the file that its mesh came from.
 const NUMBERS: &str = "cell";
 
+const NO_MESH: &str = "it has no mesh: no grid of it has points and quadrilaterals";
+/// A share of the largest coordinate by which nodes may lie beside the plane: rounding of other programs.
+const FLAT: f64 = 1e-10;
+
 /// Bytes of a cell and what is looked up by it, as `MESH` of `problem::room`.
 const CELL: u64 = 500;
 
@@ -40,12 +44,11 @@ impl Source<'_> {
 pub fn assemble(mut parts: Vec<Part>, beside: Vec<Part>, tags: &Tags, source: &Source) -> Result<Mesh> {
     let is_mesh = |part: &Part| part.points.is_some() && !part.cells.quads.is_empty();
     let has_surfaces = |part: &Part| part.points.is_some() && !part.cells.refused.is_empty();
-    let at = parts.iter().position(is_mesh).or_else(|| parts.iter().position(has_surfaces)).ok_or_else(|| {
-        source.error(
-            "it has no mesh: no grid of it has points and quadrilaterals",
-            "write the mesh with its cells into it",
-        )
-    })?;
+    let at = parts
+        .iter()
+        .position(is_mesh)
+        .or_else(|| parts.iter().position(has_surfaces))
+        .ok_or_else(|| source.error(NO_MESH, "write the mesh with its cells into it"))?;
     let mut mesh = parts.remove(at);
     let bytes = (mesh.cells.count as u64).saturating_mul(CELL);
     memory::check(bytes).map_err(|why| source.error(why, "give fewer cells"))?;
@@ -69,6 +72,43 @@ pub fn assemble(mut parts: Vec<Part>, beside: Vec<Part>, tags: &Tags, source: &S
     let mut made = rest(made).with_common_axes();
     renumber(&mut made, &mesh)?;
     Ok(made)
+}
+
+/// The cells of the first grid with quadrilaterals and all of its nodes, in the order of the file and without groups: for data at nodes.
+///
+/// # Errors
+/// No grid with quadrilaterals; cells of another kind, and whatever makes a cell unusable.
+pub fn nodal(mut parts: Vec<Part>, source: &Source) -> Result<Mesh> {
+    let has_cells = |part: &Part| !(part.cells.quads.is_empty() && part.cells.refused.is_empty());
+    let at = parts.iter().position(|part| part.points.is_some() && has_cells(part));
+    let part = parts.swap_remove(at.ok_or_else(|| source.error(NO_MESH, "give a file with cells and data at nodes"))?);
+    let points = part.points.unwrap_or_default();
+    if part.own_edges.is_some() && points.len() != 4 * part.cells.quads.len() {
+        return Err(source.error("its cells are quadrilaterals of a higher degree than 1", super::OWN));
+    }
+    let bytes = (part.cells.count as u64).saturating_mul(CELL);
+    memory::check(bytes).map_err(|why| source.error(why, "give fewer cells"))?;
+    if let Some((kind, &(count, first))) = part.cells.refused.iter().find_map(|(k, of)| Some((Kind::of(*k)?, of))) {
+        return Err(in_words(gmsh::Error::Element { kind, count, first }, source));
+    }
+    let size = points.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
+    // NaN is an error too.
+    if let Some(k) = points.iter().position(|x| x[2].is_nan() || x[2].abs() > FLAT * size) {
+        let what = format!("node {k} (from 0) has z = {}, and the body lies in the plane z = 0", points[k][2]);
+        return Err(source.error(what, "give a grid in the plane"));
+    }
+    let mut mesh = Mesh { groups: vec![BODY.to_owned()], ..Mesh::default() };
+    for &(cell, nodes) in &part.cells.quads {
+        let unknown = |node: &&u64| **node >= points.len() as u64;
+        if let Some(node) = nodes.iter().find(unknown) {
+            return Err(unknown_node(cell as u64, *node, source));
+        }
+        mesh.cells.push(nodes.map(|node| node as usize));
+        mesh.original.push(cell as u64);
+    }
+    mesh.nodes = points.into_iter().map(|[x, y, _]| [x, y]).collect();
+    mesh.cell_group = vec![0; mesh.cells.len()];
+    mesh.checked().map_err(|why| in_words(gmsh::Error::Mesh(why), source))
 }
 
 /// Different numbers in ascending order, each with its place from 1.

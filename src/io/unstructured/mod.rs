@@ -8,7 +8,7 @@ mod assemble;
 mod cells;
 mod tags;
 
-pub use assemble::{Source, assemble};
+pub use assemble::{Source, assemble, nodal};
 pub use cells::{Cells, Shape, of_mixed, of_vtk, of_xdmf};
 
 use crate::error::Result;
@@ -67,3 +67,18 @@ pub struct Data<'a> {
     /// Reads them.
     pub values: Box<dyn Fn() -> Result<Vec<f64>> + 'a>,
 }
+
+/// Numbers at all nodes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct AtNodes {
+    /// Their name.
+    pub name: String,
+    /// Numbers of a node.
+    pub components: usize,
+    /// `[node][component]`.
+    pub values: Vec<f64>,
+}
+
+/// What takes the place of exports of this program, for messages.
+pub const OWN: &str =
+    "a state of dgmpm goes on from a snapshot, or from points_*.vtu of an export: `path` in [cloud], from = \"cloud\"";

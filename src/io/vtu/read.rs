@@ -10,6 +10,7 @@ use quick_xml::events::{BytesStart, Event};
 use super::DEFORMED;
 use super::decode::{Coding, Number};
 use crate::io::grid::{Field, Kind};
+use crate::io::unstructured::AtNodes;
 use crate::io::xml::{DEPTH, attribute};
 
 /// Elements beyond which a file is refused: a hundred fields in a hundred pieces.
@@ -81,21 +82,20 @@ pub(super) struct Document<'a> {
 /// What is wrong, in words.
 pub fn points(bytes: &[u8]) -> Result<Found, String> {
     let document = Document::read(bytes, &[Section::Place, Section::PointData])?;
-    let mut fields: Vec<Field> = Vec::new();
-    for array in document.arrays.iter().filter(|array| array.section == Section::PointData) {
-        let values = document.values(array)?;
-        let kinds = [Kind::Scalar, Kind::Vector, Kind::Tensor];
-        let Some(kind) = kinds.into_iter().find(|kind| kind.components() == array.components) else { continue };
-        let known = fields.len();
-        match fields.iter_mut().find(|field| field.name == array.name) {
-            Some(field) => field.values.extend(values),
-            None if known == FIELDS => return Err(format!("it has more than {FIELDS} fields")),
-            None => fields.push(Field::new(&array.name, kind, values)),
-        }
-    }
-    let points = document.points()?;
-    fields.retain(|field| field.values.len() == points.len() * field.kind.components());
-    Ok((points, fields))
+    let of = |data: AtNodes| {
+        let kind = [Kind::Scalar, Kind::Vector, Kind::Tensor].into_iter().find(|k| k.components() == data.components);
+        kind.map(|kind| Field { name: data.name, kind, values: data.values })
+    };
+    let fields = document.at_points()?.into_iter().filter_map(of).collect();
+    Ok((document.points()?, fields))
+}
+
+/// Reads all numbers at the points that each piece of the file has.
+///
+/// # Errors
+/// What is wrong, in words.
+pub fn at_nodes(bytes: &[u8]) -> Result<Vec<AtNodes>, String> {
+    Document::read(bytes, &[Section::Place, Section::PointData])?.at_points()
 }
 
 /// Whether the comment behind the document says that it is an export of the deformed body.
@@ -140,6 +140,22 @@ impl<'a> Document<'a> {
             points.extend(self.values(array)?.as_chunks::<3>().0);
         }
         Ok(points)
+    }
+
+    /// All numbers at the points that each piece has.
+    fn at_points(&self) -> Result<Vec<AtNodes>, String> {
+        let mut all: Vec<AtNodes> = Vec::new();
+        for array in self.arrays.iter().filter(|array| array.section == Section::PointData) {
+            let (values, known) = (self.values(array)?, all.len());
+            match all.iter_mut().find(|data| data.name == array.name) {
+                Some(data) => data.values.extend(values),
+                None if known == FIELDS => return Err(format!("it has more than {FIELDS} fields")),
+                None => all.push(AtNodes { name: array.name.clone(), components: array.components, values }),
+            }
+        }
+        let points = self.pieces.iter().fold(0_usize, |sum, piece| sum.saturating_add(piece[0]));
+        all.retain(|data| data.components > 0 && points.checked_mul(data.components) == Some(data.values.len()));
+        Ok(all)
     }
 
     /// All numbers of an array.

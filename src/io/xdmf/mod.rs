@@ -6,10 +6,12 @@
 
 mod mesh;
 mod names;
+mod nodal;
 mod read;
 mod series;
 
 pub use mesh::{write_all, write_boundary, write_mesh};
+pub use nodal::is_own_series;
 pub use read::{File, REMEDY, beside};
 pub use series::Series;
 

@@ -19,7 +19,7 @@ pub const REMEDY: &str = "give an XDMF file with a mesh of quadrilaterals, its n
 
 /// An XDMF file with the HDF5 files beside it that have been opened.
 pub struct File<'a> {
-    path: &'a Path,
+    pub(super) path: &'a Path,
     readers: RefCell<HashMap<String, Rc<Reader>>>,
 }
 
@@ -143,7 +143,7 @@ impl<'a> File<'a> {
     }
 
     /// The numbers of an array.
-    fn numbers(&self, item: &Element) -> Result<Vec<f64>> {
+    pub(super) fn numbers(&self, item: &Element) -> Result<Vec<f64>> {
         let text = std::str::from_utf8(&item.text).map_err(|_| self.error("an array is not UTF-8 text"))?;
         let kind = item.attribute("ItemType").unwrap_or("Uniform");
         if kind != "Uniform" || item.attribute("Reference").is_some() || !item.children.is_empty() {

@@ -60,12 +60,7 @@ impl Series {
 
     /// Says where the states come from and where points are, as attributes of the HDF5 file.
     pub fn label(&self, from: &Provenance, positions: &str) -> Result<()> {
-        let put = |(name, text): (&str, String)| hdf5::put_attribute(&self.file, name, &text);
-        from.attributes()
-            .into_iter()
-            .chain([("positions", positions.to_owned())])
-            .try_for_each(put)
-            .map_err(|e| Error::output(&self.h5, hdf5::reason(&e)))
+        from.label(&self.file, positions).map_err(|e| Error::output(&self.h5, hdf5::reason(&e)))
     }
 
     /// Continues the series on another grid of the same degree.
