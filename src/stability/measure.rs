@@ -113,12 +113,16 @@ pub fn measure(setup: &Setup, questions: Questions) -> Result<Measured> {
         _ => {}
     }
     let problem = setup.build()?;
-    let cells = problem.columns().len();
-    let unknowns = cells * problem.per_cell();
+    let cells = problem.columns();
+    let of_cell = |cell: &usize| problem.at_nodes() + problem.own_creep(*cell).count();
+    let unknowns: usize = cells.iter().map(of_cell).sum();
     if unknowns > MOST_UNKNOWNS {
-        let most = MOST_UNKNOWNS / problem.per_cell();
-        let what =
-            format!("{} of {} unknowns; at most {most} at this degree", count(cells, "cell"), problem.per_cell());
+        let mean = unknowns.div_ceil(cells.len());
+        let what = format!(
+            "{} of {mean} unknowns; at most {} at this degree",
+            count(cells.len(), "cell"),
+            MOST_UNKNOWNS / mean
+        );
         return Err(Error::input(
             what,
             "give a coarser or shorter body (eigenvalues of a full matrix), or a lower degree",
