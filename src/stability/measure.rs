@@ -149,7 +149,7 @@ pub fn measure(setup: &Setup, questions: Questions) -> Result<Measured> {
     let names = Names::of(&problem.scene);
     Ok(Measured {
         names,
-        cells,
+        cells: cells.len(),
         unknowns,
         courant,
         growth: growth * unit,
