@@ -21,9 +21,11 @@ const COLUMNS: [&str; 11] = [
     "c_max",
 ];
 
-/// The next columns, if the displacement is known: the difference between F and the shape, [`Totals::max_drift`], and the energy in the
-/// springs of faces, [`Totals::in_faces`], which is part of the total energy.
-const SHAPE: [&str; 2] = ["max_drift", "face_energy"];
+/// The next column, if the displacement is known: the difference between F and the shape, [`Totals::max_drift`].
+const DRIFT: &str = "max_drift";
+
+/// The next column of a run with springs in the faces: what they store, [`Totals::in_faces`], part of the total energy.
+const FACES: &str = "face_energy";
 
 /// The next column, if a law has memory: the energy that laws have dissipated since their material was virgin.
 const DISSIPATED: &str = "material_dissipation";
@@ -52,8 +54,10 @@ const BALANCE: [&str; 7] = [
 /// The further columns of a ledger.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Contents {
-    /// The difference between F and the shape, and the energy in the springs of faces.
+    /// The difference between F and the shape.
     pub drift: bool,
+    /// The energy in the springs of faces.
+    pub springs: bool,
     /// The energy that laws have dissipated.
     pub dissipated: bool,
     /// The columns of [`Balance`].
@@ -79,9 +83,10 @@ impl Ledger {
     /// # Errors
     /// The file cannot be created.
     pub fn create(path: &Path, schedule: Schedule, contents: Contents) -> Result<Self, Error> {
-        let Contents { drift, dissipated, balance, regrids, contact, corrections } = contents;
+        let Contents { drift, springs, dissipated, balance, regrids, contact, corrections } = contents;
         let mut columns = COLUMNS.to_vec();
-        columns.extend(SHAPE.iter().filter(|_| drift));
+        columns.extend(drift.then_some(DRIFT));
+        columns.extend(springs.then_some(FACES));
         columns.extend(dissipated.then_some(DISSIPATED));
         columns.extend(BALANCE.iter().filter(|_| balance));
         columns.extend((balance && regrids).then_some(REGRIDS));
@@ -138,9 +143,8 @@ impl Observer for Ledger {
             totals.max_curl,
             view.survey.fastest,
         ];
-        if self.contents.drift {
-            row.extend([totals.max_drift.unwrap_or(f64::NAN), totals.in_faces]);
-        }
+        row.extend(self.contents.drift.then(|| totals.max_drift.unwrap_or(f64::NAN)));
+        row.extend(self.contents.springs.then_some(totals.in_faces));
         row.extend(self.contents.dissipated.then(|| totals.dissipated.unwrap_or(0.0)));
         if let Some(balance) = view.balance.filter(|_| self.contents.balance) {
             row.extend(columns(balance, &totals));

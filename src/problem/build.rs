@@ -170,6 +170,9 @@ impl Scene {
             true => self.keeping_angular_momentum(scheme)?,
             false => scheme,
         };
+        if self.scheme.springs {
+            scheme = scheme.with_springs().map_err(|why| why.or_at(self.place("scheme.springs")))?;
+        }
         scheme.scene = differences::hash(self);
         // Constants have no curl.
         match curl.filter(|_| self.scheme.degree > 0) {

@@ -79,6 +79,7 @@ impl Problem {
         let Self { scene, body, scheme, state, .. } = self;
         let contents = Contents {
             drift: state.has_displacement(),
+            springs: scheme.has_springs(),
             dissipated: !scheme.histories.is_empty(),
             regrids: !scene.regrids.is_empty(),
             contact: scheme.has_contacts(),

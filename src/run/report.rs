@@ -216,7 +216,6 @@ impl Report {
             ("peak_memory_mib", json!(peak_memory_mib())),
             ("kinetic_energy", json!(last.kinetic)),
             ("strain_energy", json!(last.strain)),
-            ("face_energy", json!(last.in_faces)),
             ("total_energy_ratio", json!(self.energy_ratio())),
             ("momentum", json!(last.momentum)),
             ("work", self.work_json()),
@@ -226,6 +225,9 @@ impl Report {
         ];
         if let Some(drift) = last.max_drift {
             pairs.push(("max_drift", json!(drift)));
+        }
+        if last.in_faces > 0.0 {
+            pairs.push(("face_energy", json!(last.in_faces)));
         }
         if let Some(dissipated) = last.dissipated {
             pairs.push(("material_dissipation", json!(dissipated)));

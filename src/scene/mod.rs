@@ -214,6 +214,9 @@ pub struct Scheme {
     pub sweeps: Sweeps,
     /// Whether each body keeps its angular momentum to rounding; default false.
     pub angular_momentum: bool,
+    /// Whether faces give back what they creep ([`crate::riemann::creep`]); default false.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub springs: bool,
 }
 
 /// The size of a step.

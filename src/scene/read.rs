@@ -115,7 +115,12 @@ fn scheme(table: &mut Reader) -> Result<Scheme> {
         None => Sweeps::Paper,
     };
     let angular_momentum = values.boolean("angular_momentum");
-    Ok(Scheme { method, degree, time_degree, flux, step, sweeps, angular_momentum })
+    let springs = values.boolean("springs");
+    if springs && degree == 0 {
+        let what = "at degree 0 the jump at a face is all that a cell knows of its neighbour, and no spring holds it";
+        return Err(table.wrong("springs", what, "give degree 1 or more, or remove this key"));
+    }
+    Ok(Scheme { method, degree, time_degree, flux, step, sweeps, angular_momentum, springs })
 }
 
 fn materials(tables: &mut [Reader], general: &General, degree: usize) -> Result<Vec<Material>> {

@@ -249,6 +249,13 @@ pub(super) const SCHEME: &[Parameter] = &[
         Form::Boolean,
         Preset::Boolean(false),
     ),
+    key(
+        "springs",
+        "whether springs in the faces give back what jumps of traction move them by: elastic bodies that vibrate or carry loads for long keep their energy; flux `dual`",
+        "",
+        Form::Boolean,
+        Preset::Boolean(false),
+    ),
 ];
 
 pub(super) const CURL: &[Parameter] =

@@ -72,6 +72,7 @@ fn defaults() {
         step: Step::Safety(0.9),
         sweeps: Sweeps::Ladder,
         angular_momentum: false,
+        springs: false,
     };
     assert_eq!(scene.scheme, scheme);
     assert!(scene.outputs.is_empty() && scene.sources.is_empty());

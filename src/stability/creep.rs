@@ -24,6 +24,9 @@ impl Problem {
     pub(super) fn own_creep(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
         let of_face = if self.state.creep.is_empty() { 0 } else { self.scheme.creep_of_block() / FACES };
         let is_own = move |face: &usize| {
+            if self.spring_of(cell, *face) == 0.0 {
+                return false;
+            }
             let Some(across) = self.beyond(cell, *face) else { return true };
             let blocks = &self.scheme.operators.blocks;
             let (there, other) = (blocks.cells[across.face / FACES][across.lane], across.face % FACES);
@@ -46,21 +49,27 @@ impl Problem {
         }
     }
 
-    /// (k w l)^(1/2) h of a number of the creep of a cell, whose energy in units h is half of its square.
-    pub(super) fn root_of_creep(&self, cell: usize, k: usize) -> f64 {
+    /// k l of a face of a cell, Pa; 0 where it has no spring.
+    fn spring_of(&self, cell: usize, face: usize) -> f64 {
         let (scheme, blocks) = (&self.scheme, &self.scheme.operators.blocks);
-        let of_face = scheme.creep_of_block() / FACES;
         let (block, lane) = blocks.slot[cell];
         let own = blocks.material[block];
-        let there = match blocks.neighbours[block][k / of_face][lane] {
-            Neighbour::Interface(_, law) => law,
-            _ => own,
-        };
-        let share = match blocks.neighbours[block][k / of_face][lane] {
-            Neighbour::Boundary(group) if scheme.boundaries[group].gives_back() == GivesBack::Along => 0.5,
-            _ => 1.0,
-        };
-        let weight = scheme.operators.line.basis.weights[k % of_face / AXES];
-        (scheme.spring_between([own, there]) * share * weight).sqrt() * self.h
+        match blocks.neighbours[block][face][lane] {
+            Neighbour::Cell(_) => scheme.spring_between([own; 2]),
+            Neighbour::Interface(_, law) => scheme.spring_between([own, law]),
+            // The other half is the image's.
+            Neighbour::Boundary(group) if scheme.boundaries[group].gives_back() == GivesBack::Along => {
+                0.5 * scheme.spring_at(group, own)
+            }
+            Neighbour::Boundary(group) => scheme.spring_at(group, own),
+            Neighbour::Padding => 0.0,
+        }
+    }
+
+    /// (k w l)^(1/2) h of a number of the creep of a cell, whose energy in units h is half of its square.
+    pub(super) fn root_of_creep(&self, cell: usize, k: usize) -> f64 {
+        let of_face = self.scheme.creep_of_block() / FACES;
+        let weight = self.scheme.operators.line.basis.weights[k % of_face / AXES];
+        (self.spring_of(cell, k / of_face) * weight).sqrt() * self.h
     }
 }

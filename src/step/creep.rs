@@ -7,10 +7,11 @@
 use super::block::Block;
 use super::{Flux, Law, Scheme};
 use crate::boundary::GivesBack;
+use crate::error::{Error, Result};
 use crate::lane::{F8, LANES, Lanes, load_array, store_array};
 use crate::mesh::FACES;
 use crate::operators::Neighbour;
-use crate::riemann::{Looks, Medium, Riemann, Trace, creep, summed_impedance};
+use crate::riemann::{Looks, Medium, Riemann, Trace, creep, summed_impedance, tangent};
 use crate::state::{State, UNKNOWNS};
 use crate::tensor::{AXES, DEFORMATION, dot, times};
 
@@ -195,20 +196,29 @@ impl Block<'_> {
         flux: impl FnOnce(&Trace<f64>) -> [f64; UNKNOWNS],
     ) -> [f64; UNKNOWNS] {
         let (metric, at) = (self.metric().lane(lane), face * self.scheme.operators.line.m + point);
-        let (normal, stiffness) = (metric.normal(face), springs.pull().modulus / metric.length(face));
-        // The mean of F and its image turns nowhere, and the pull is shared with the image.
-        let along = how == GivesBack::Along;
-        let (rotation, share) = if along { ([1.0, 0.0], 0.5) } else { (creep::rotation(inside.f), 1.0) };
-        let pull = springs.pull().of_lane(at, lane, rotation, share * stiffness);
+        let Neighbour::Boundary(group) = self.scheme.operators.blocks.neighbours[self.number][face][lane] else {
+            return flux(inside);
+        };
+        let (normal, length) = (metric.normal(face), metric.length(face));
+        let stiffness = self.scheme.spring_at(group, self.material()) / length;
+        if how == GivesBack::Along {
+            // The mean of F and its image turns nowhere, and the pull is shared with the image. What the condition adds to the rows of F for the
+            // jump of F to the image is no creep.
+            let pull = springs.pull().of_lane(at, lane, [1.0, 0.0], 0.5 * stiffness);
+            let (mut flux, along) = (flux(inside), tangent(normal));
+            let admittance = self.face_point(face, point, lane).admittance(inside);
+            let back = admittance * dot(pull, along);
+            (0..DEFORMATION).for_each(|k| flux[k] += back * along[k / 2] * normal[k % 2]);
+            let velocity = -admittance * dot(inside.t, along) - back;
+            springs.follow(at, lane, [1.0, 0.0], along.map(|along| velocity * along));
+            return flux;
+        }
+        let rotation = creep::rotation(inside.f);
+        let pull = springs.pull().of_lane(at, lane, rotation, stiffness);
         let seen = Trace { t: [0, 1].map(|i| inside.t[i] + pull[i]), ..*inside };
         let flux = flux(&seen);
         let back = times([flux[0], flux[1], flux[2], flux[3]], normal);
-        let mut velocity = [0, 1].map(|i| -back[i] - inside.v[i]);
-        if along {
-            let across = dot(velocity, normal);
-            velocity = [0, 1].map(|i| velocity[i] - across * normal[i]);
-        }
-        springs.follow(at, lane, rotation, velocity);
+        springs.follow(at, lane, rotation, [0, 1].map(|i| -back[i] - inside.v[i]));
         flux
     }
 
@@ -260,15 +270,49 @@ pub(super) fn moduli(laws: &[Law], flux: &Flux) -> Vec<f64> {
 }
 
 impl Scheme {
+    /// With springs that give back what faces creep ([`creep`]).
+    ///
+    /// # Errors
+    /// A flux that lets no face creep so.
+    pub fn with_springs(self) -> Result<Self> {
+        if self.moduli.is_empty() {
+            let what = "springs in the faces need the flux `dual`";
+            return Err(Error::input(what, "give flux = \"dual\", or remove `springs` of [scheme]"));
+        }
+        if self.laws.iter().all(|law| law.has_memory()) {
+            let what =
+                "a law with internal variables has no springs in its faces: where it flows they would make energy";
+            return Err(Error::input(what, "remove `springs` of [scheme], or give a part of the body another law"));
+        }
+        Ok(Self { gives_back: true, ..self })
+    }
+
+    /// Whether springs give back what faces creep.
+    pub fn has_springs(&self) -> bool {
+        self.gives_back
+    }
+
     /// Whether faces keep their creep.
     fn keeps_creep(&self) -> bool {
         (0..self.moduli.len()).any(|law| self.spring_between([law; 2]) > 0.0)
     }
 
+    /// k l at a boundary whose faces give back what they creep, Pa. The shear of a free side creeps at 1/(rho0 c_s): k is so much less that
+    /// its relaxation is no faster than inside, at any c_p/c_s.
+    pub(crate) fn spring_at(&self, group: usize, law: usize) -> f64 {
+        let inside = self.spring_between([law; 2]);
+        match self.boundaries[group].gives_back() {
+            GivesBack::Nothing => 0.0,
+            GivesBack::Along => inside,
+            GivesBack::All if inside > 0.0 => inside * (self.laws[law].shear_modulus() / self.moduli[law]).sqrt(),
+            GivesBack::All => 0.0,
+        }
+    }
+
     /// beta M = k l of a face between two laws, Pa; 0 where one of them has memory, see [`creep::spring`].
     pub(crate) fn spring_between(&self, laws: [usize; 2]) -> f64 {
         let flows = laws.iter().any(|law| self.laws[*law].has_memory());
-        if flows { 0.0 } else { creep::spring(self.operators.degree) * self.modulus_between(laws) }
+        if flows || !self.gives_back { 0.0 } else { creep::spring(self.operators.degree) * self.modulus_between(laws) }
     }
 
     /// M of a face between two laws, Pa.
@@ -328,7 +372,7 @@ impl Scheme {
     /// What the springs of the faces of a block store, sum k/2 |a|^2 w l, J/m, a lane a cell; each side of an inner face has half.
     pub(super) fn stored_by_creep(&self, block: usize, creep: &[F8]) -> F8 {
         let mut out = F8::ZERO;
-        if creep.is_empty() {
+        if creep.is_empty() || self.spring_between([self.operators.blocks.material[block]; 2]) == 0.0 {
             return out;
         }
         let (m, blocks) = (self.operators.line.m, &self.operators.blocks);
@@ -346,7 +390,7 @@ impl Scheme {
                 let modulus = match neighbour {
                     Neighbour::Boundary(group) => match self.boundaries[*group].gives_back() {
                         GivesBack::Along => 0.5 * own,
-                        _ => own,
+                        _ => self.spring_at(*group, law),
                     },
                     Neighbour::Cell(_) => 0.5 * own,
                     Neighbour::Interface(_, there) => 0.5 * self.spring_between([law, *there]),
