@@ -110,16 +110,16 @@ pub trait Riemann: Copy + std::fmt::Debug + Send + Sync + 'static {
     }
 }
 
-/// Interior penalty of displacement: t* gets K `[u]`, K = [`HOLD`] M / (2 l) with M = rho0 c_p^2 at F = 1 (`modulus`, Pa; between two
-/// laws [`creep::in_series`]) and the length l of the face; here -l K `[u]`, what is lifted.
+/// Interior penalty of displacement: t* gets K `[u]`, K = [`HOLD`] / l / (1/(rho0 c_p^2)^- + 1/(rho0 c_p^2)^+) with the length l of the
+/// face; here -l K `[u]`, what is lifted.
 ///
 /// The jump of v alone is held by a force that its rate makes, so that under a load that stays cells part for good. This
 /// force is that of a spring: with K/2 `[u]`^2 in the energy of the face its power cancels, for every law, since du/dt = v; the
 /// energy law of a flux stands as it was. Source: the symmetric interior penalty method (Arnold, SIAM J. Numer. Anal. 19, 1982).
-/// Which traces of u are meant: [`crate::operators::Line::held`].
+/// Which traces of u are meant: [`crate::operators::Line::held`]. The `moduli` rho0 c_p^2 are those of both sides over `unit`, Pa.
 #[inline(always)]
-pub fn hold<L: Lane>(gap: [L; 2], modulus: f64) -> [L; 2] {
-    let stiffness = L::splat(-0.5 * HOLD * modulus);
+pub fn hold<L: Lane>(gap: [L; 2], moduli: [L; 2], unit: f64) -> [L; 2] {
+    let stiffness = L::splat(-HOLD * unit) * (moduli[0] * moduli[1]) / (moduli[0] + moduli[1]);
     [stiffness * gap[0], stiffness * gap[1]]
 }
 

@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::mesh::FACES;
 use crate::operators::Neighbour;
 use crate::operators::sides::Across;
-use crate::riemann::{creep, hold};
+use crate::riemann::hold;
 use crate::tensor::AXES;
 use faer::traits::ext::ComplexFieldExt;
 use faer::{Mat, Side, c64};
@@ -43,7 +43,7 @@ impl Springs {
         if !problem.state.has_displacement() {
             return None;
         }
-        let faces = Faces { problem };
+        let faces = Faces::new(problem);
         let mut springs = Self { blocks: vec![] };
         for (row, &cell) in cells.iter().enumerate() {
             for face in 0..FACES {
@@ -141,9 +141,16 @@ struct Sides {
 /// The faces of a problem.
 struct Faces<'a> {
     problem: &'a Problem,
+    /// F and the other unknowns, `[cell][component][node]`.
+    base: Vec<f64>,
 }
 
-impl Faces<'_> {
+impl<'a> Faces<'a> {
+    fn new(problem: &'a Problem) -> Self {
+        let (blocks, nodes) = (&problem.scheme.operators.blocks, problem.scheme.operators.nodes());
+        Self { problem, base: problem.state.unpack(blocks, nodes) }
+    }
+
     /// The cell beyond a face between cells, and the factors of both; none at the boundary of the body.
     fn springs(&self, cell: usize, face: usize) -> Option<(usize, Sides)> {
         let operators = &self.problem.scheme.operators;
@@ -154,11 +161,12 @@ impl Faces<'_> {
             return None;
         };
         let (there, other) = (operators.blocks.cells[across.face / FACES][across.lane], across.face % FACES);
-        let modulus = creep::in_series([cell, there].map(|cell| self.modulus(cell)));
+        let normal = operators.geometry.blocks[block].lane(lane).normal(face);
         let (mut own, mut beyond) = (vec![], vec![]);
         for point in 0..operators.line.m {
             let opposite = Self::opposite(&across, point, operators.line.m);
-            let [stiffness, _] = hold([-1.0, 0.0], modulus);
+            let moduli = [self.modulus(cell, face, point, normal), self.modulus(there, other, opposite, normal)];
+            let [stiffness, _] = hold([-1.0, 0.0], moduli, 1.0);
             let factor = (operators.line.basis.weights[point] * stiffness).sqrt() * self.problem.h;
             own.push(self.at_nodes(&operators.line.held, face, point, factor));
             beyond.push(self.at_nodes(&operators.line.held, other, opposite, factor));
@@ -179,11 +187,16 @@ impl Faces<'_> {
         out
     }
 
-    /// rho0 c_p^2 of the law of a cell at F = 1, Pa.
-    fn modulus(&self, cell: usize) -> f64 {
-        let scheme = &self.problem.scheme;
+    /// rho0 c_p^2 of a cell at a point of a face, Pa.
+    fn modulus(&self, cell: usize, face: usize, point: usize, normal: [f64; 2]) -> f64 {
+        let (scheme, stride) = (&self.problem.scheme, self.problem.per_cell());
+        let n = scheme.operators.nodes();
+        let ends = self.at_nodes(&scheme.operators.line.ends, face, point, 1.0);
+        let f = std::array::from_fn(|k| {
+            ends.iter().zip(&self.base[cell * stride + k * n..]).map(|(end, f)| end * f).sum::<f64>()
+        });
         let law = &scheme.laws[scheme.operators.blocks.material[scheme.operators.blocks.slot[cell].0]];
-        law.density() * law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0].powi(2)
+        law.density() * law.speeds(f, normal)[0].powi(2)
     }
 
     /// Where the block of a cell in H stands: the offset of the row unit from that of the cell, and the place of the cell in its unit.

@@ -1,11 +1,11 @@
 //! What faces between cells add to the balance of energy.
 
-use super::across::Other;
+use super::across::{Beyond, Other};
 use super::balance::{BlockBalance, FacePower};
 use super::block::Block;
 use super::block_work::FluxWork;
 use super::creep::{Pull, Pulling};
-use super::flux::Sides;
+use super::meeting_flux::Met;
 use super::trace::{trace_of, turn, turned, with_width};
 use super::volume::width;
 use crate::lane::{F8, Lanes, load_array, store_array};
@@ -13,6 +13,17 @@ use crate::operators::Neighbour;
 use crate::riemann::{Looks, Riemann};
 use crate::state::UNKNOWNS;
 use crate::tensor::AXES;
+
+/// The traces of a face of a block, [point][width].
+#[derive(Clone, Copy)]
+pub(super) struct Sides<'a> {
+    pub face: usize,
+    pub own: &'a [F8],
+    /// With its own normal; lanes at a boundary see themselves or what they must not use.
+    pub other: &'a Beyond<'a>,
+    /// What else faces of the block meet; none where no condition pairs faces.
+    pub met: Option<Met<'a>>,
+}
 
 /// What a face between cells adds to the balance of the block. The fluxes are found once more: without the balance they never come to
 /// memory.

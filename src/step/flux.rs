@@ -5,12 +5,13 @@ use super::balance::{BlockBalance, boundary_loss, boundary_power};
 use super::block::Block;
 use super::block_work::FluxWork;
 use super::creep::{Creep, Pulling, Springs};
-use super::face_balance::FaceBalance;
+use super::face_balance::{FaceBalance, Sides};
 use super::meeting_flux::Met;
 use super::meetings::Meetings;
 use super::outside::{ExternalWork, FaceForces};
 use super::phase::{Part, Ticks};
-use super::trace::{gap, trace_of, turn, turned, with_width};
+use super::spring_faces::SpringFaces;
+use super::trace::{gap, held, trace_of, turn, turned, with_width};
 use super::volume::{Arrays, width};
 use crate::boundary::{FacePoint, GivesBack, Moment};
 use crate::built;
@@ -34,12 +35,8 @@ pub(super) struct Faces<'a> {
     /// See [`Block::turning`].
     turning: f64,
     medium: Medium<f64>,
-    /// M of the law where the flux looks at the displacement, Pa; see [`crate::riemann::creep`].
-    modulus: f64,
     /// [face][point][6], out.
     lift: &'a mut [F8],
-    /// The springs of the faces; none where they have none.
-    springs: Option<Springs<'a>>,
     /// What is held, [face][point][2], out where the flux looks at the displacement.
     held: &'a mut [F8],
 }
@@ -80,26 +77,12 @@ impl Faces<'_> {
             let there = turned::<L, R, W>(other.load::<L, W>(point));
             let plus = trace_of::<L, R, W>(&there);
             if R::LOOKS == Looks::Displacement {
-                let held = hold(gap(&load_array::<L, W>(&own[point]), &there), self.modulus);
+                let held = held(&load_array::<L, W>(&own[point]), &there, self.medium.density);
                 store_array(held, &mut self.held.as_chunks_mut::<2>().0[m * face + point]);
             }
             store_array(riemann.lifted(&minus, &plus, normal, &medium, length), &mut lift[point]);
-            if let Some(springs) = &mut self.springs {
-                springs.act(m * face + point, riemann, [&minus, &plus], (normal, length), &medium, &mut lift[point]);
-            }
         }
     }
-}
-
-/// The traces of a face of a block, [point][width].
-#[derive(Clone, Copy)]
-pub(super) struct Sides<'a> {
-    pub face: usize,
-    pub own: &'a [F8],
-    /// With its own normal; lanes at a boundary see themselves or what they must not use.
-    pub other: &'a Beyond<'a>,
-    /// What else faces of the block meet; none where no condition pairs faces.
-    met: Option<Met<'a>>,
 }
 
 /// Where the energy that passes the faces of a block goes.
@@ -150,23 +133,15 @@ impl Block<'_> {
         let creep = meter.creep.take();
         let mut springs = creep.and_then(|creep| Springs::new(self, creep, &mut nodes.creep));
         let (lift, held, pull) = (&mut nodes.lift[..], &mut nodes.held[..], springs.as_ref().map(|own| own.pull));
-        let work = springs.as_mut().map(Springs::again);
         flux.faces(
             scheme.kernel,
-            Faces {
-                metered,
-                own,
-                other: &other,
-                metric,
-                points: m,
-                turning: self.turning(),
-                medium,
-                modulus: scheme.moduli.get(self.material()).copied().unwrap_or(0.0),
-                lift,
-                springs: work,
-                held,
-            },
+            Faces { metered, own, other: &other, metric, points: m, turning: self.turning(), medium, lift, held },
         );
+        if let Some(springs) = springs.as_mut().map(Springs::again) {
+            let lift = &mut nodes.lift[..];
+            let other = &other;
+            flux.springs(scheme.kernel, SpringFaces { metered, own, other, metric, points: m, medium, springs, lift });
+        }
         for face in 0..FACES {
             let met = meetings.filter(|_| built::CONTACT).map(|meetings| Met { meetings, traces });
             let sides = Sides { face, own: &own[face * length..][..length], other: &other[face], met };
@@ -309,7 +284,12 @@ impl Block<'_> {
             (Looks::Displacement, Neighbour::Interface(_, material)) => {
                 let there: [f64; 11] = std::array::from_fn(|k| other.number(point, k, own.len(), lane));
                 let here: [f64; 11] = std::array::from_fn(|k| own[k].0[lane]);
-                hold(gap(&here, &there), self.modulus_between(*material))
+                let densities = [self.law().density(), self.scheme.laws[*material].density()];
+                hold(
+                    gap(&here, &there),
+                    [densities[0] * (here[8] * here[8]), densities[1] * (there[8] * there[8])],
+                    1.0,
+                )
             }
             _ => [0.0; 2],
         }

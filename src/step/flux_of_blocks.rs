@@ -3,6 +3,7 @@
 use super::block_work::WithFlux;
 use super::face_balance::FaceBalance;
 use super::flux::Faces;
+use super::spring_faces::SpringFaces;
 use crate::lane::Kernel;
 use crate::riemann::{Looks, Riemann};
 use crate::state::UNKNOWNS;
@@ -43,6 +44,8 @@ pub(super) trait BlockFlux: std::fmt::Debug + Send + Sync {
     fn looks(&self) -> Looks;
     /// The lifted fluxes of the four faces.
     fn faces(&self, kernel: Kernel, work: Faces);
+    /// The springs of the four faces, after their fluxes.
+    fn springs(&self, kernel: Kernel, work: SpringFaces);
     /// What a face adds to the balance of energy.
     fn face_balance(&self, kernel: Kernel, work: FaceBalance);
 }
@@ -53,6 +56,10 @@ impl<R: Riemann> BlockFlux for R {
     }
 
     fn faces(&self, kernel: Kernel, work: Faces) {
+        kernel.run(WithFlux(*self, work));
+    }
+
+    fn springs(&self, kernel: Kernel, work: SpringFaces) {
         kernel.run(WithFlux(*self, work));
     }
 

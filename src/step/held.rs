@@ -11,7 +11,7 @@ use crate::tensor::{AXES, dot};
 use rayon::prelude::*;
 
 impl Scheme {
-    /// Sum over the faces between cells of K/2 int |`[u]`|^2 ds, J/m, K being constant. `cells` is memory for it; the blocks are added by
+    /// Sum over the faces between cells of K/2 int |`[u]`|^2 ds, J/m, with K of the laws at F = 1: that of the state differs by its strain. `cells` is memory for it; the blocks are added by
     /// an exact sum.
     pub fn stored_by_jumps(&self, state: &State, cells: &mut Vec<F8>) -> f64 {
         if !state.has_displacement() || self.moduli.is_empty() {
@@ -37,13 +37,13 @@ impl Scheme {
             if (there, across.lane, face_there) < (block, lane, face) {
                 continue;
             }
-            let modulus = self.modulus_between([own, law]);
+            let moduli = [own, law].map(|law| self.moduli[law]);
             for (point, weight) in self.operators.line.basis.weights[..m].iter().enumerate() {
                 let opposite = if across.flip { m - 1 - point } else { point };
                 let here = self.held_displacement(state, [block, lane, face, point]);
                 let beyond = self.held_displacement(state, [there, across.lane, face_there, opposite]);
                 let gap = [beyond[0] - here[0], beyond[1] - here[1]];
-                sum -= 0.5 * weight * dot(hold(gap, modulus), gap);
+                sum -= 0.5 * weight * dot(hold(gap, moduli, 1.0), gap);
             }
         }
         sum

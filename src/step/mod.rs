@@ -55,6 +55,7 @@ mod segments;
 mod shape;
 mod shared;
 mod sources;
+mod spring_faces;
 mod stage;
 mod sums;
 mod survey;

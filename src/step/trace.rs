@@ -3,7 +3,7 @@
 use super::across::Other;
 use super::volume::width;
 use crate::lane::{F8, Lane, Lanes};
-use crate::riemann::{Looks, Riemann, Trace};
+use crate::riemann::{Looks, Riemann, Trace, hold};
 use crate::state::UNKNOWNS;
 use crate::tensor::DEFORMATION;
 
@@ -56,6 +56,12 @@ pub(super) fn turn<L: Lanes, O: Other, const W: usize>(own: &[[F8; W]], other: &
         square = change.mul_add(change, square);
     }
     square.sqrt() * L::splat(turning)
+}
+
+/// What is lifted of the held jump of displacement, [`hold`], from the numbers of both sides of one law.
+#[inline(always)]
+pub(super) fn held<L: Lane>(own: &[L], there: &[L], density: f64) -> [L; 2] {
+    hold(gap(own, there), [own[8] * own[8], there[8] * there[8]], density)
 }
 
 /// The jump of displacement, from the numbers of both sides.
