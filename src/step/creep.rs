@@ -176,11 +176,6 @@ impl Pulling<'_, '_> {
 }
 
 impl Block<'_> {
-    /// M of a face to another law, Pa.
-    pub(super) fn modulus_between(&self, material: usize) -> f64 {
-        self.scheme.modulus_between([self.material(), material])
-    }
-
     /// beta M = k l of a face to another law, Pa.
     pub(super) fn spring_between(&self, material: usize) -> f64 {
         self.scheme.spring_between([self.material(), material])
@@ -316,7 +311,7 @@ impl Scheme {
     }
 
     /// M of a face between two laws, Pa.
-    pub(super) fn modulus_between(&self, laws: [usize; 2]) -> f64 {
+    fn modulus_between(&self, laws: [usize; 2]) -> f64 {
         let of = |law: usize| self.moduli.get(law).copied().unwrap_or(0.0);
         if laws.iter().all(|law| of(*law) > 0.0) { creep::in_series(laws.map(of)) } else { 0.0 }
     }
