@@ -130,7 +130,7 @@ impl Watch {
             Some(balance) => balance.energy,
             None => scheme.energy(state, work, &mut self.cells),
         };
-        self.stored = work.stored_in_contact(scheme, state) + scheme.stored_by_jumps(state, &mut self.cells);
+        self.stored = work.stored_in_contact(scheme, state);
         self.between_nodes = scheme.samples_between_nodes();
         self.look(energy, state, limits)
     }

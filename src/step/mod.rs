@@ -30,7 +30,6 @@ mod finish;
 mod flux;
 mod flux_of_blocks;
 mod health;
-mod held;
 pub mod history;
 mod law;
 
