@@ -174,8 +174,8 @@ RING = Case(
     "validation/ring.toml",
     "A ring vibrates on its own, linear and small, from round to oval and back, for two periods. The period is that "
     "of the lowest mode of the round ring by finite elements in scikit-fem (Q2, curved, 2 x 64 to 8 x 256 elements, "
-    "of which the last two differ by 6e-5). An elastic ring without load keeps its energy; this one does not, unless springs "
-    "hold its faces (springs = true). It shows what straight cells cost in a thin curved body, see the list of what is not within its bound.",
+    "of which the last two differ by 6e-5). An elastic ring without load keeps its energy; this one does not. It "
+    "shows what straight cells cost in a thin curved body, see the list of what is not within its bound.",
     [
         Line(
             f"period, {label}",
@@ -187,9 +187,8 @@ RING = Case(
             lambda runs, label=label: 2 * np.pi / frequency(*track(runs[label], "side", "velocity_1"), 1779.6),
             (label,),
         )
-        for label in ("S2, 2 x 32", "S2, 4 x 64", "S2, 2 x 32, springs")
+        for label in ("S2, 2 x 32", "S2, 4 x 64")
     ]
-    + energy_lines(("S2, 2 x 32, springs",), "")
     + energy_lines(
         ("S2, 2 x 32", "S3, 2 x 32", "S2, 4 x 64"),
         "Cells have straight edges, so the ring is a polygon, and at each of its corners the bending stress along "
@@ -199,12 +198,7 @@ RING = Case(
         "curved edges would have no such corners; the program does not have them.",
     ),
     Picture("Stress along x where the ring is most oval (2 x 32 cells; its displacement is too small to see).", "cauchy_stress_11", "S2, 2 x 32"),
-    {
-        "S2, 2 x 32": [],
-        "S3, 2 x 32": ["scheme.degree=3"],
-        "S2, 4 x 64": ["mesh.file=ring_fine.msh"],
-        "S2, 2 x 32, springs": ["scheme.springs=true"],
-    },
+    {"S2, 2 x 32": [], "S3, 2 x 32": ["scheme.degree=3"], "S2, 4 x 64": ["mesh.file=ring_fine.msh"]},
 )
 
 RINGS = Case(
