@@ -88,8 +88,12 @@ impl<'a> Springs<'a> {
         }
         store_array(lifted, lift);
         let (inverse, [minus, plus]) = (L::splat(1.0) / length, sides);
-        let jump = [0, 1].map(|i| point.admittance * (plus.t[i] - minus.t[i] - pull[i] * inverse));
-        let rate = creep::turned_back(point.rotation, jump);
+        // No closures: the compiler need not inline them, and a call stands without the features of the processor.
+        let mut moved = [L::zero(); AXES];
+        for i in 0..AXES {
+            moved[i] = point.admittance * (plus.t[i] - minus.t[i] - pull[i] * inverse);
+        }
+        let rate = creep::turned_back(point.rotation, moved);
         for i in 0..AXES {
             let before = L::load(&self.before[AXES * at + i]);
             L::splat(self.dt).mul_add(rate[i], before).store(&mut self.now[AXES * at + i]);
@@ -118,7 +122,8 @@ impl Pull<'_> {
     #[inline(always)]
     fn of<L: Lanes>(&self, at: usize, rotation: [L; 2]) -> [L; 2] {
         let a = load_array::<L, AXES>(&self.start[AXES * at..][..AXES]);
-        creep::turned(rotation, a).map(|a| L::splat(self.modulus) * a)
+        let ([one, two], modulus) = (creep::turned(rotation, a), L::splat(self.modulus));
+        [modulus * one, modulus * two]
     }
 
     /// k R a at a point between two cells of one law, Pa; adds what it does to Flux*.
@@ -134,7 +139,8 @@ impl Pull<'_> {
     ) -> [L; 2] {
         let point = Point::new(riemann, sides, medium);
         let inverse = L::splat(1.0) / length;
-        let pull = self.of::<L>(at, point.rotation).map(|pull| pull * inverse);
+        let [one, two] = self.of::<L>(at, point.rotation);
+        let pull = [one * inverse, two * inverse];
         let mut sum = load_array::<L, UNKNOWNS>(flux);
         for i in 0..AXES {
             for k in 0..AXES {
