@@ -94,9 +94,9 @@ impl<'a> Springs<'a> {
             moved[i] = point.admittance * (plus.t[i] - minus.t[i] - pull[i] * inverse);
         }
         let rate = creep::turned_back(point.rotation, moved);
-        for i in 0..AXES {
+        for (i, rate) in rate.iter().enumerate() {
             let before = L::load(&self.before[AXES * at + i]);
-            L::splat(self.dt).mul_add(rate[i], before).store(&mut self.now[AXES * at + i]);
+            L::splat(self.dt).mul_add(*rate, before).store(&mut self.now[AXES * at + i]);
         }
     }
 
@@ -110,9 +110,9 @@ impl<'a> Springs<'a> {
     /// A point of a lane whose face has moved with v* - mean v, m/s.
     pub fn follow(&mut self, at: usize, lane: usize, rotation: [f64; 2], velocity: [f64; 2]) {
         let rate = creep::turned_back(rotation, velocity);
-        for i in 0..AXES {
+        for (i, rate) in rate.iter().enumerate() {
             let k = AXES * at + i;
-            self.now[k].0[lane] = self.dt.mul_add(rate[i], self.before[k].0[lane]);
+            self.now[k].0[lane] = self.dt.mul_add(*rate, self.before[k].0[lane]);
         }
     }
 }
