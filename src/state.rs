@@ -38,7 +38,7 @@ pub struct State {
     /// The displacement that a grid of this run began with, `[block][component][node]`, whose jumps are not held: they are those of
     /// the projection. Empty on the first grid.
     pub unheld: Vec<F8>,
-    /// The creep of face points ([`crate::riemann::creep`]), `[block][face][point][2]`, m; empty where the flux keeps none.
+    /// The creep of face points ([`crate::riemann::creep`]), `[block][face][point][2]`, m; empty where no springs are asked for.
     pub creep: Vec<F8>,
     /// By boundary group of the mesh, then by contact pair ([`crate::step::Scheme::receivers`]); empty where nobody asks for it ([`crate::step::Motion::with_forces`]).
     pub received: Vec<Received>,

@@ -42,7 +42,7 @@ pub struct Snapshot {
     /// The part of the displacement whose jumps are not held by the flux, of the same shape; empty if all jumps are held
     /// ([`crate::state::State::unheld`]).
     pub unheld: Vec<f64>,
-    /// The creep of face points `[cell][face][point][2]`, in m ([`crate::state::State::creep`]); empty where the flux keeps none.
+    /// The creep of face points `[cell][face][point][2]`, in m ([`crate::state::State::creep`]); empty where no springs are asked for.
     pub creep: Vec<f64>,
     /// Internal variables `[cell][point][variable]`, none for cells of elastic laws.
     pub internal: Vec<f64>,

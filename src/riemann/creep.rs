@@ -11,7 +11,8 @@
 //! [`in_series`]) and l the length of the face. What the jump of traction does at the face is then
 //! `[t].(v* - mean v)` = Y^-1 |da/dt|^2 + d/dt (k/2 |a|^2): a loss and a stored energy, neither below 0, whatever R and the law.
 //! Waves that pass a cell in less than the relaxation time 1/(Y k), some 2 l/(beta theta c_p), see the flux as it is. What lasts longer is
-//! held, and the face gives back what it has crept. A free surface has Z^-1 for Y, and -t for `[t]`.
+//! held, and the face gives back what it has crept. A free surface has Z^-1 for Y, -t for `[t]`, and k c_s/c_p for k: its shear creeps at
+//! 1/(rho0 c_s).
 
 use crate::lane::Lane;
 
@@ -21,7 +22,7 @@ use crate::lane::Lane;
 /// even N by 2, 1 and 5 %. At N = 1 ADER has a reason of its own: its predictor sees no neighbours and drives slow motions of faces, by which the ring gains
 /// .8 % with .3 between two of its extremes, nothing with .03. At N = 0 a jump is all that a cell knows of its neighbour, and nothing is held.
 /// A law with memory has no springs: where it flows jumps of traction last, and what holds the faces then makes a Taylor bar (S1 to S3) gain
-/// .8, .12 and .5 % where it gains .01, .05 and .2 % without.
+/// .8, .12 and .5 % where it gains .01, .05 and .2 % without. (Measured with the whole of k at free sides, too.)
 const SPRING: [f64; 7] = [0.0, 0.03, 0.3, 0.03, 0.3, 0.03, 0.3];
 
 /// beta of a degree N.
