@@ -4,7 +4,7 @@
 mod scenes;
 
 use dgmpm::parts::state::Received;
-use dgmpm::parts::step::{Held, Motion, phase::PARTS};
+use dgmpm::parts::step::{Held, Motion, Part, phase::PARTS};
 use scenes::Body;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -49,12 +49,26 @@ fn an_elastic_scene_without_effects_holds_nothing_for_them_and_has_no_clock_of_t
     assert_eq!(motion.work.held(), Held::default());
     let state = &motion.state;
     assert!(state.internal.is_empty() && state.boundary.is_empty() && state.received.is_empty());
+    assert!(state.creep.is_empty() && motion.work.next.creep.is_empty());
     assert!(
         problem.scheme.sources.is_empty() && problem.scheme.corrections.is_empty() && problem.scheme.curl.is_none()
     );
     let parts = motion.work.take_phases().parts;
     // Of the parts of phases only the wall, which the scene has.
     assert!(parts.len() == PARTS && parts[0] > 0.0 && parts[1..].iter().all(|seconds| *seconds == 0.0), "{parts:?}");
+}
+
+#[test]
+fn springs_hold_what_their_faces_have_crept_and_have_a_clock() {
+    let problem = plain().problem(&["scheme.springs=true"]);
+    let mut motion = Motion::new(&problem.scheme, problem.state).unwrap();
+    motion.advance(&problem.scheme, 1e-6).unwrap();
+    // Blocks of 8 of the 64 cells, four faces of three points, two numbers each.
+    let creep: usize = 8 * 4 * 3 * 2;
+    let threads = rayon::current_num_threads();
+    assert_eq!((motion.state.creep.len(), motion.work.held().springs), (creep, (2 * creep + threads * creep / 8) * 64));
+    let parts = motion.work.take_phases().parts;
+    assert!(parts[Part::Springs as usize] > 0.0, "{parts:?}");
 }
 
 #[test]

@@ -386,6 +386,7 @@ fn a_run_reports_the_effects_that_it_had_and_no_others() {
     assert_eq!(names(&plain), ["curl control rotation", "output ledger"]);
     assert_eq!(names(&plain.clone().table("curl", "control = \"off\"")), ["output ledger"]);
     let full = plain.side("left", "wall", "").side("top", "absorbing", "").ledger(1);
+    let full = full.scheme("springs", "true").scheme("flux", "\"dual\"");
     let full = full.table("[source]", "kind = \"gravity\"\nvalue = [0, -9.81]").table("limiter", "kind = \"moment\"");
     let full = full.table("[quantity]", "name = \"l\"\nkind = \"extent\"").table("[regrid]", "at = [1e-5]\nrefine = 2");
     let all = effects_of(&output(full, "force", "walls", ""));
@@ -398,6 +399,7 @@ fn a_run_reports_the_effects_that_it_had_and_no_others() {
         "limiter moment",
         "rescue",
         "balance of energy",
+        "springs",
         "regrid",
         "output ledger",
         "output force",
@@ -406,7 +408,8 @@ fn a_run_reports_the_effects_that_it_had_and_no_others() {
     assert_eq!(named, expected);
     assert!(all.iter().all(|(_, _, took_time)| *took_time), "{all:?}");
     // 16 cells on a side of 1 m after the change, 3 points each.
-    assert_eq!((&all[0].1[..], &all[2].1[..], &all[7].1[..]), ("left, 48 points", "256 cells", "1 time"));
+    assert_eq!((&all[0].1[..], &all[2].1[..], &all[8].1[..]), ("left, 48 points", "256 cells", "1 time"));
+    assert_eq!(all[7].1, "256 cells");
 }
 
 #[test]

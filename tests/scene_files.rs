@@ -96,6 +96,15 @@ const BAD: &[Row] = &[
     ("[time]", "[limiter]\nkind = \"moment\"\nbeta = 3\n[time]", 38, 8, &["`beta` is 3", "from 1 to 2"]),
     ("[time]", "[limiter]\nkind = \"vertex\"\nbeta = 2\n[time]", 38, 1, &["unknown key `beta`", "threshold"]),
     ("[time]", "[limiter]\nkind = \"off\"\nrescue = 1\n[time]", 38, 10, &["`rescue` is 1", "true or false"]),
+    ("[time]", "springs = 1\n[time]", 36, 11, &["`springs` is 1", "true or false"]),
+    ("[time]", "springs = \"yes\"\n[time]", 36, 11, &["`springs` is the text \"yes\"", "true or false"]),
+    (
+        "[time]",
+        "springs = true\nflux = \"acoustic\"\n[time]",
+        36,
+        11,
+        &["need the flux `dual`, and here it is `acoustic`", "give flux = \"dual\", or remove this key"],
+    ),
     // types
     ("degree = 2", "degree = \"two\"", 34, 10, &["`degree` is the text \"two\"", "whole number from 0 to 6"]),
     ("degree = 2", "degree = 2.5", 34, 10, &["`degree` is 2.5", "whole number"]),

@@ -46,6 +46,8 @@ pub(super) const CASES: &[Case] = &[
     Case { table: "[curl]", name: "lcf", with: &["curl.control=lcf"], without: &["curl.control=off"] },
     case("[limiter]", "moment", &["limiter.kind=moment"]),
     case("[limiter]", "vertex", &["limiter.kind=vertex"]),
+    case("[scheme]", "angular_momentum", &["scheme.angular_momentum=true"]),
+    case("[scheme]", "springs", &["scheme.springs=true"]),
     track("fields", &["output=[{kind=\"fields\",every_steps=1},{kind=\"ledger\",balance=false,every_steps=1000000}]"]),
     track(
         "line",

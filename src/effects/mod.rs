@@ -32,12 +32,24 @@ fn of<B>(table: &'static str, entries: &'static Table<B>) -> Vec<Effect> {
     entries.iter().map(effect).collect()
 }
 
+/// The keys of `[scheme]` that are effects: each is its own key.
+const OF_SCHEME: [&str; 2] = ["angular_momentum", "springs"];
+
+fn of_scheme() -> impl Iterator<Item = Effect> {
+    OF_SCHEME.iter().filter_map(|name| {
+        let key = crate::scene::of_scheme(name)?;
+        let (table, formula) = ("[scheme]", formulas::formula("[scheme]", name));
+        Some(Effect { table, name: key.name, about: key.about, keys: &[], formula })
+    })
+}
+
 /// All effects, those that a program has added too. `off` is none.
 pub fn effects() -> Vec<Effect> {
     let mut all = of("[[boundary]]", &CONDITIONS);
     all.extend(of("[[source]]", &SOURCES));
     all.extend(of("[curl]", &CONTROLS));
     all.extend(of("[limiter]", &LIMITERS));
+    all.extend(of_scheme());
     all.extend(of("[[regrid]]", &GRIDS));
     all.extend(of("[[output]]", &OUTPUTS));
     all.extend(of("[[quantity]]", &QUANTITIES));

@@ -2,7 +2,8 @@
 //! files.
 //!
 //! Arrays, with M = degree + 1: `time` in s and `step`; `u` (cells, 6, M, M), the grid unknowns F11, F12, F21, F22, p1,
-//! p2 at the Gauss nodes (node i along xi1, j along xi2); `displacement` (cells, 2, M, M) or empty; `internal` (n), the
+//! p2 at the Gauss nodes (node i along xi1, j along xi2); `displacement` (cells, 2, M, M) or empty; `creep` (cells, 4, M, 2), what the
+//! points of faces have crept in m, where they have springs; `internal` (n), the
 //! internal variables point by point: cells in the order of the mesh, points in that of the cloud (nodes a = i M + j for
 //! ADER-DGFEM and RK-DGFEM), variables in that of the cell's law, which may have none; `boundary` (n), the memory of boundary
 //! conditions, likewise; `received` (groups and 2 pairs, 3), what the body has received through each boundary group, and each side of a

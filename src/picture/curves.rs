@@ -27,7 +27,8 @@ const LEDGER: [Part; 4] = [
         &[
             ("kinetic_energy", "kinetic"),
             ("strain_energy", "strain"),
-            ("total_energy", "kinetic + strain"),
+            ("face_energy", "in springs of faces"),
+            ("total_energy", "total"),
             ("material_dissipation", "dissipated by the law"),
             ("boundary_work", "work of boundaries"),
             ("source_work", "work of sources"),

@@ -42,7 +42,8 @@ impl Problem {
         // The first trial touches the memory for the first time.
         let _ = trial();
         let seconds = trial() * steps;
-        let states = size_of_val(&state.u[..]) + size_of_val(&state.internal[..]) + Kept::bytes(state);
+        let of_state = size_of_val(&state.u[..]) + size_of_val(&state.internal[..]);
+        let states = of_state + size_of_val(&motion.state.creep[..]) + Kept::bytes(&motion.state);
         let bytes = scheme.operators.bytes() + motion.work.bytes() + states;
         let survey = motion.survey;
         let certificates = self.certificates(&survey);

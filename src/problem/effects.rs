@@ -33,7 +33,7 @@ impl Effect {
 }
 
 /// All effects of a run: conditions (a free side is none), sources, the control of the curl, limiter, angular momentum that is kept,
-/// rescue, balance, changes of grid, outputs, quantities.
+/// springs in the faces, rescue, balance, changes of grid, outputs, quantities.
 pub fn effects(problem: &Problem, report: &Report) -> Vec<Effect> {
     let mut out = conditions(problem, report);
     out.extend(sources(problem, report));
@@ -109,6 +109,11 @@ fn of_the_step(Problem { scene, body, scheme, .. }: &Problem, report: &Report) -
     add(scheme.keeps_angular_momentum(), "angular momentum".to_owned(), turning, report.held.turning);
     add(scheme.rescue.is_some(), "rescue".to_owned(), report.rescue, report.held.rescue);
     add(report.balance.is_some(), "balance of energy".to_owned(), at_faces + in_cells, report.held.balance);
+    if scheme.has_springs() {
+        let seconds = report.phases.parts[Part::Springs as usize];
+        let own = Effect::new("springs", count(scheme.cells_with_springs(), "cell"), seconds);
+        out.push(own.bytes(report.held.springs));
+    }
     let (seconds, times) = report.regrids;
     if times > 0 {
         out.push(Effect::new("regrid", count(times, "time"), seconds));

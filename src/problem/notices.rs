@@ -47,6 +47,7 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     all.extend(fast_boundary(scene, mesh, scheme));
     all.extend(thin(mesh, blocks, scene.scheme.degree));
     all.extend(short(scene, *dt));
+    all.extend(other_springs(problem));
     let notice = scene.curl.build().notice;
     all.extend((!notice.is_empty()).then(|| notice.to_owned()));
     if *steps <= 1.0 {
@@ -167,6 +168,24 @@ fn partly_inside(mesh: &Mesh, counts: &[EdgeCount], rest: &str) -> Vec<String> {
         )
     };
     counts.iter().enumerate().filter(partly).map(text).collect()
+}
+
+/// A word on a start from a snapshot whose run had springs in its faces where this scene has none, or the other way round.
+fn other_springs(Problem { scene, scheme, state, .. }: &Problem) -> Option<String> {
+    scene.initial.snapshot.as_ref()?;
+    match (scheme.keeps_creep(), state.creep.is_empty()) {
+        (true, true) => Some(
+            "the snapshot has no creep of faces, since its run had no springs: what its faces have crept stays, and those of this scene \
+             (scheme.springs = true) give back what comes from here on"
+                .to_owned(),
+        ),
+        (false, false) => Some(
+            "the snapshot has the creep of faces of a run with springs, and this scene has none: its faces stay where they are, and the \
+             energy in their springs (face_energy of that run) is lost; scheme.springs = true keeps both"
+                .to_owned(),
+        ),
+        _ => None,
+    }
 }
 
 /// A word on cells with a boundary on two opposite sides, where the degree is 1: they do not hold bending.

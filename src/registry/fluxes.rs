@@ -1,7 +1,7 @@
 //! The fluxes on inner faces, `[scheme] flux = ..`.
 
 use super::{ANY, Entry, Table};
-use crate::riemann::{Acoustic, AcousticCurl, Dual, Rusanov};
+use crate::riemann::{Acoustic, AcousticCurl, Dual, Looks, Rusanov};
 use crate::step;
 
 /// What there is to know of a flux.
@@ -82,6 +82,11 @@ pub static FLUXES: Table<Flux> = Table::new(&[
         build: Flux { make: || step::Flux::from(AcousticCurl), when_lost, share: 0.6 },
     },
 ]);
+
+/// Whether faces with a flux can give back what they creep ([`crate::riemann::creep`]).
+pub fn may_have_springs(flux: &Flux) -> bool {
+    (flux.make)().looks() == Looks::Displacement
+}
 
 fn when_lost(memory: bool) -> Option<&'static str> {
     Some(if memory { WITH_MEMORY } else { "holds less in compression" })

@@ -111,7 +111,7 @@ impl Kept {
 
     /// Bytes of the states that are held for a run of states like `state`.
     pub fn bytes(state: &State) -> usize {
-        2 * (size_of_val(&state.u[..]) + size_of_val(&state.internal[..]))
+        2 * (size_of_val(&state.u[..]) + size_of_val(&state.internal[..]) + size_of_val(&state.creep[..]))
     }
 }
 

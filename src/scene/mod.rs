@@ -37,7 +37,7 @@ pub use mesh::{GroupName, Mesh, MeshGroups};
 pub use names::Histories;
 use origin::{Origin, Part};
 pub use quantities::MEASURES;
-pub use reference::reference;
+pub use reference::{of_scheme, reference};
 use serde::Serialize;
 pub use times::Checkpoint;
 use toml_edit::{Document, DocumentMut};

@@ -50,11 +50,15 @@ pub(super) fn scene(document: &Document<&str>, origin: Origin) -> Result<Scene> 
     }
     let materials = materials(&mut material_tables, &general, degree)?;
     let limiter = chosen(limiter_table.as_mut(), &tables::LIMITER[0], (&LIMITERS, limiters::DEFAULT), degree)?;
-    let names_a_flux = scheme_table.is_some_and(|table| table.has("flux"));
+    let names_a_flux = scheme_table.as_ref().is_some_and(|table| table.has("flux"));
     let other = |material: &Material| laws::has_memory(material.law.entry) || laws::is_soft(&material.law);
     let keeps_its_flux = names_a_flux || degree == 0 || materials.iter().any(other);
     if let Some(entry) = limiter.build().flux.filter(|_| !keeps_its_flux).and_then(|name| FLUXES.find(name)) {
         scheme.flux = Chosen { entry, values: Default::default() };
+    }
+    if let (true, Some(table)) = (scheme.springs, &scheme_table) {
+        let of_limiter = limiter.build().flux.filter(|_| !names_a_flux).map(|_| limiter.name());
+        springs(table, &scheme, &materials, of_limiter)?;
     }
     let (start, end) = time(time_table.as_mut().ok_or_else(|| need("time", "add [time] with end, in s"))?)?;
     let scene = Scene {
@@ -116,11 +120,27 @@ fn scheme(table: &mut Reader) -> Result<Scheme> {
     };
     let angular_momentum = values.boolean("angular_momentum");
     let springs = values.boolean("springs");
-    if springs && degree == 0 {
-        let what = "at degree 0 the jump at a face is all that a cell knows of its neighbour, and no spring holds it";
-        return Err(table.wrong("springs", what, "give degree 1 or more, or remove this key"));
-    }
     Ok(Scheme { method, degree, time_degree, flux, step, sweeps, angular_momentum, springs })
+}
+
+/// Whether faces can have the springs that a scene asks for; `limiter` is the name of one that chose the flux.
+fn springs(table: &Reader, scheme: &Scheme, materials: &[Material], limiter: Option<&str>) -> Result<()> {
+    let wrong = |what: &str, remedy: &str| Err(table.wrong("springs", what, remedy));
+    if scheme.degree == 0 {
+        let what = "at degree 0 the jump at a face is all that a cell knows of its neighbour, and no spring holds it";
+        return wrong(what, "give degree 1 or more, or remove this key");
+    }
+    if !fluxes::may_have_springs(scheme.flux.build()) {
+        let of_limiter = limiter.map_or(String::new(), |name| format!(", which the limiter `{name}` brings"));
+        let what =
+            format!("springs in the faces need the flux `dual`, and here it is `{}`{of_limiter}", scheme.flux.name());
+        return wrong(&what, "give flux = \"dual\", or remove this key");
+    }
+    if materials.iter().all(|material| laws::has_memory(material.law.entry)) {
+        let what = "a law with internal variables has no springs in its faces: where it flows they would make energy";
+        return wrong(what, "remove this key, or give a part of the body another law");
+    }
+    Ok(())
 }
 
 fn materials(tables: &mut [Reader], general: &General, degree: usize) -> Result<Vec<Material>> {

@@ -26,6 +26,11 @@ pub fn reference() -> String {
     page + include_str!("page/end.md")
 }
 
+/// The key of `[scheme]` of this name.
+pub fn of_scheme(name: &str) -> Option<&'static Parameter> {
+    tables::SCHEME.iter().find(|key| key.name == name)
+}
+
 /// Every table with its keys, and the entries that it chooses from.
 fn all(page: &mut String) {
     *page += "\n### Above all tables\n";

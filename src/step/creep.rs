@@ -1,18 +1,16 @@
-//! The creep of faces ([`crate::riemann::creep`]) in a step: a at each face point of each cell, in [`State::creep`]. Both cells of a face
-//! keep it, from the same numbers.
+//! The creep of faces ([`crate::riemann::creep`]) in a step: a at each face point of each cell, in
+//! [`crate::state::State::creep`]. Both cells of a face keep it, from the same numbers. Which faces have springs, and how stiff they are:
+//! `springs`.
 //!
 //! All stages of a step see a of its start; the step is some hundredth of the relaxation time, and what the step then loses at a face
 //! is Y^-1 |da/dt|^2 (1 - k Y dt/2), above 0.
 
 use super::block::Block;
-use super::{Flux, Law, Scheme};
 use crate::boundary::GivesBack;
-use crate::error::{Error, Result};
-use crate::lane::{F8, LANES, Lanes, load_array, store_array};
-use crate::mesh::FACES;
+use crate::lane::{F8, Lanes, load_array, store_array};
 use crate::operators::Neighbour;
-use crate::riemann::{Looks, Medium, Riemann, Trace, creep, summed_impedance, tangent};
-use crate::state::{State, UNKNOWNS};
+use crate::riemann::{Medium, Riemann, Trace, creep, summed_impedance, tangent};
+use crate::state::UNKNOWNS;
 use crate::tensor::{AXES, DEFORMATION, dot, times};
 
 /// The creep of the faces of a block in a stage, [face][point][2], m.
@@ -260,146 +258,5 @@ impl<L: Lanes> Point<L> {
         let (m, p) = (minus.f, plus.f);
         let f = [m[0] + p[0], m[1] + p[1], m[2] + p[2], m[3] + p[3]];
         Self { rotation: creep::rotation(f), admittance: riemann.admittance(minus, plus, medium) }
-    }
-}
-
-/// rho0 c_p^2 at F = 1 by law, Pa; empty where the flux has no springs.
-pub(super) fn moduli(laws: &[Law], flux: &Flux) -> Vec<f64> {
-    let modulus = |law: &Law| law.density() * law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0].powi(2);
-    let has_springs = flux.looks() == Looks::Displacement;
-    if has_springs { laws.iter().map(modulus).collect() } else { vec![] }
-}
-
-impl Scheme {
-    /// With springs that give back what faces creep ([`creep`]).
-    ///
-    /// # Errors
-    /// A flux that lets no face creep so.
-    pub fn with_springs(self) -> Result<Self> {
-        if self.moduli.is_empty() {
-            let what = "springs in the faces need the flux `dual`";
-            return Err(Error::input(what, "give flux = \"dual\", or remove `springs` of [scheme]"));
-        }
-        if self.laws.iter().all(|law| law.has_memory()) {
-            let what =
-                "a law with internal variables has no springs in its faces: where it flows they would make energy";
-            return Err(Error::input(what, "remove `springs` of [scheme], or give a part of the body another law"));
-        }
-        Ok(Self { gives_back: true, ..self })
-    }
-
-    /// Whether springs give back what faces creep.
-    pub fn has_springs(&self) -> bool {
-        self.gives_back
-    }
-
-    /// Whether faces keep their creep.
-    fn keeps_creep(&self) -> bool {
-        (0..self.moduli.len()).any(|law| self.spring_between([law; 2]) > 0.0)
-    }
-
-    /// k l at a boundary whose faces give back what they creep, Pa. The shear of a free side creeps at 1/(rho0 c_s): k is so much less that
-    /// its relaxation is no faster than inside, at any c_p/c_s.
-    pub(crate) fn spring_at(&self, group: usize, law: usize) -> f64 {
-        let inside = self.spring_between([law; 2]);
-        match self.boundaries[group].gives_back() {
-            GivesBack::Nothing => 0.0,
-            GivesBack::Along => inside,
-            GivesBack::All if inside > 0.0 => inside * (self.laws[law].shear_modulus() / self.moduli[law]).sqrt(),
-            GivesBack::All => 0.0,
-        }
-    }
-
-    /// beta M = k l of a face between two laws, Pa; 0 where one of them has memory, see [`creep::spring`].
-    pub(crate) fn spring_between(&self, laws: [usize; 2]) -> f64 {
-        let flows = laws.iter().any(|law| self.laws[*law].has_memory());
-        if flows || !self.gives_back { 0.0 } else { creep::spring(self.operators.degree) * self.modulus_between(laws) }
-    }
-
-    /// M of a face between two laws, Pa.
-    fn modulus_between(&self, laws: [usize; 2]) -> f64 {
-        let of = |law: usize| self.moduli.get(law).copied().unwrap_or(0.0);
-        if laws.iter().all(|law| of(*law) > 0.0) { creep::in_series(laws.map(of)) } else { 0.0 }
-    }
-
-    /// Numbers of the creep of a block.
-    pub(crate) fn creep_of_block(&self) -> usize {
-        FACES * self.operators.line.m * AXES
-    }
-
-    /// The creep of the faces of a block in a state; empty where they have no springs.
-    pub(super) fn creep_of<'s>(&self, state: &'s State, block: usize) -> &'s [F8] {
-        let count = self.creep_of_block();
-        state.creep.get(count * block..count * (block + 1)).unwrap_or_default()
-    }
-
-    /// A state with room for the creep of its faces, which begins at 0 where the state has none.
-    pub(super) fn make_room_for_creep(&self, state: &mut State) {
-        let wanted = if self.keeps_creep() { self.creep_of_block() * self.operators.blocks.len() } else { 0 };
-        if state.creep.len() != wanted {
-            state.creep = vec![F8::ZERO; wanted];
-        }
-    }
-
-    /// The creep of a state of `before` on this grid, whose cells that are copies of old ones `same` names: faces between two of
-    /// them keep it, others begin at 0; empty where they have no springs.
-    pub fn creep_from(&self, before: &Scheme, state: &State, same: &[Option<usize>]) -> Vec<F8> {
-        if state.creep.is_empty() || !self.keeps_creep() {
-            return vec![];
-        }
-        let (blocks, count) = (&self.operators.blocks, self.creep_of_block());
-        let old = before.operators.blocks.unpack(&state.creep, count);
-        let mut new = vec![0.0; count * blocks.slot.len()];
-        let copied = |cell: usize| same.get(cell).copied().flatten();
-        for (cell, &(block, lane)) in blocks.slot.iter().enumerate() {
-            let Some(twin) = copied(cell) else { continue };
-            for face in 0..FACES {
-                let stays = match blocks.neighbours[block][face][lane] {
-                    Neighbour::Cell(there) | Neighbour::Interface(there, _) => {
-                        copied(blocks.cells[there.face / FACES][there.lane]).is_some()
-                    }
-                    Neighbour::Boundary(_) => true,
-                    Neighbour::Padding => false,
-                };
-                if stays {
-                    let of_face = face * count / FACES..(face + 1) * count / FACES;
-                    new[count * cell..][of_face.clone()].copy_from_slice(&old[count * twin..][of_face]);
-                }
-            }
-        }
-        blocks.pack(&new, count, |_| 0.0)
-    }
-
-    /// What the springs of the faces of a block store, sum k/2 |a|^2 w l, J/m, a lane a cell; each side of an inner face has half.
-    pub(super) fn stored_by_creep(&self, block: usize, creep: &[F8]) -> F8 {
-        let mut out = F8::ZERO;
-        if creep.is_empty() || self.spring_between([self.operators.blocks.material[block]; 2]) == 0.0 {
-            return out;
-        }
-        let (m, blocks) = (self.operators.line.m, &self.operators.blocks);
-        let law = blocks.material[block];
-        let own = self.spring_between([law; 2]);
-        let faces = creep.as_chunks::<AXES>().0.chunks_exact(m).zip(&blocks.neighbours[block]);
-        for (points, neighbours) in faces {
-            let mut sum = F8::ZERO;
-            for (a, weight) in points.iter().zip(&self.operators.line.basis.weights) {
-                for lane in 0..LANES {
-                    sum.0[lane] += weight * (a[0].0[lane] * a[0].0[lane] + a[1].0[lane] * a[1].0[lane]);
-                }
-            }
-            for (lane, neighbour) in neighbours.iter().enumerate() {
-                let modulus = match neighbour {
-                    Neighbour::Boundary(group) => match self.boundaries[*group].gives_back() {
-                        GivesBack::Along => 0.5 * own,
-                        _ => self.spring_at(*group, law),
-                    },
-                    Neighbour::Cell(_) => 0.5 * own,
-                    Neighbour::Interface(_, there) => 0.5 * self.spring_between([law, *there]),
-                    Neighbour::Padding => 0.0,
-                };
-                out.0[lane] += 0.5 * modulus * sum.0[lane];
-            }
-        }
-        out
     }
 }

@@ -138,9 +138,9 @@ impl Block<'_> {
             Faces { metered, own, other: &other, metric, points: m, turning: self.turning(), medium, lift, held },
         );
         if let Some(springs) = springs.as_mut().map(Springs::again) {
-            let lift = &mut nodes.lift[..];
-            let other = &other;
+            let (start, lift, other) = (meter.phases.start(), &mut nodes.lift[..], &other);
             flux.springs(scheme.kernel, SpringFaces { metered, own, other, metric, points: m, medium, springs, lift });
+            meter.phases.book_part(Part::Springs, start);
         }
         for face in 0..FACES {
             let met = meetings.filter(|_| built::CONTACT).map(|meetings| Met { meetings, traces });

@@ -55,6 +55,7 @@ mod shape;
 mod shared;
 mod sources;
 mod spring_faces;
+mod springs;
 mod stage;
 mod sums;
 mod survey;
@@ -137,10 +138,11 @@ impl Work {
         let operators = &scheme.operators;
         let points =
             operators.points.as_ref().map_or(0, |p| p.first.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0));
+        let creep = if state.creep.is_empty() { 0 } else { scheme.creep_of_block() };
         let scratch = || {
             Mutex::new(Scratch {
                 points: predictor::Arrays::new(points, operators.line.m, &scheme.method, !scheme.sources.is_empty()),
-                nodes: volume::Arrays::new(operators.line.m, state.components),
+                nodes: volume::Arrays::new(operators.line.m, state.components, creep),
                 phases: phase::Ticks::of(2 * operators.blocks.len() * scheme.stages()),
             })
         };
@@ -180,7 +182,15 @@ impl Work {
             corrections: corrections - rescue,
             turning: self.outside.torques.as_ref().map_or(0, |torques| size_of_val(&torques[..])),
             rescue,
+            // Before and after the step, and that of a block for each thread.
+            springs: (2 * self.next.creep.len() + self.creep_of_threads()) * size_of::<F8>(),
         }
+    }
+
+    /// Numbers of the creep that threads hold, in lanes.
+    fn creep_of_threads(&self) -> usize {
+        let of = |scratch: &Mutex<Scratch>| scratch.lock().map_or(0, |own| own.nodes.creep.len());
+        self.scratch.iter().map(of).sum()
     }
 
     /// The energy that contact and cohesive edges store in `state`, J/m.
@@ -200,7 +210,8 @@ impl Work {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let numbers = self.next.u.len() + self.next.internal.len() + 2 * self.speed.len() + self.tiles.numbers();
+        let next = self.next.u.len() + self.next.internal.len() + self.next.creep.len();
+        let numbers = next + 2 * self.speed.len() + self.tiles.numbers();
         numbers * size_of::<F8>()
             + self.outside.bytes()
             + self.balance.as_ref().map_or(0, |blocks| size_of_val(&blocks[..]))
@@ -223,6 +234,8 @@ pub struct Held {
     pub turning: usize,
     /// The rescue.
     pub rescue: usize,
+    /// The creep of faces with springs.
+    pub springs: usize,
 }
 
 /// A stage of a step; ADER has one.

@@ -60,10 +60,12 @@ pub enum Part {
     CellBalance,
     /// Bodies that keep their angular momentum: with the corrections.
     AngularMomentum,
+    /// Springs in the faces between cells: in the flux. Those at boundaries and between materials are with the conditions.
+    Springs,
 }
 
 /// Number of parts.
-pub const PARTS: usize = 5;
+pub const PARTS: usize = 6;
 
 /// Seconds per phase.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -60,7 +60,7 @@ impl Memory {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        (self.start.u.len() + self.start.internal.len()) * size_of::<F8>() + self.lost.len()
+        (self.start.u.len() + self.start.internal.len() + self.start.creep.len()) * size_of::<F8>() + self.lost.len()
     }
 }
 

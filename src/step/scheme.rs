@@ -123,7 +123,7 @@ impl Scheme {
         let (histories, boundary_memory) =
             (Histories::new(&operators, &laws), BoundaryMemory::new(&operators, &boundaries));
         let sees_faces = boundaries.iter().any(|boundary| boundary.sees_faces());
-        let moduli = super::creep::moduli(&laws, &flux);
+        let moduli = super::springs::moduli(&laws, &flux);
         let (sources, corrections, curl, kernel) = (vec![], vec![], None, Kernel::widest());
         Ok(Self {
             operators,

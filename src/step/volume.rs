@@ -43,7 +43,7 @@ pub struct Arrays {
     pub lift: Vec<F8>,
     /// Lifted by the traces of what is held: [face][face point][2].
     pub held: Vec<F8>,
-    /// The creep of the faces before a stage, [face][point][2], where they have springs.
+    /// The creep of the faces before a stage, [face][point][2]; empty where they have no springs.
     pub creep: Vec<F8>,
     /// The mass matrix, by node, where it is wanted.
     pub masses: Vec<F8>,
@@ -54,8 +54,8 @@ pub struct Arrays {
 }
 
 impl Arrays {
-    /// For M nodes a direction and `components` components of the state.
-    pub fn new(m: usize, components: usize) -> Self {
+    /// For M nodes a direction, `components` components of the state and so many numbers of the creep of a block.
+    pub fn new(m: usize, components: usize, creep: usize) -> Self {
         let zeros = |count: usize| vec![F8::ZERO; count];
         let n = m * m;
         Self {
@@ -67,7 +67,7 @@ impl Arrays {
             displacement: zeros(AXES * n),
             lift: zeros(FACES * UNKNOWNS * m),
             held: zeros(FACES * AXES * m),
-            creep: zeros(FACES * AXES * m),
+            creep: zeros(creep),
             masses: zeros(n),
             weighted: zeros(DEFORMATION * n),
             coefficients: zeros(DEFORMATION * n),

@@ -67,6 +67,24 @@ fn impact_regrid_plasticity_gap_and_all_outputs() {
 }
 
 #[test]
+fn springs_in_faces() {
+    let scene = Bench::new();
+    let elastic = "material=[{law=\"neo-hookean\",young=2e11,poisson=0.3,density=7800}]";
+    let sets = [elastic, "scheme.springs=true"];
+    // Before, between and behind the changes of the grid.
+    compare("springs", &scene.path("case.toml"), &sets, &[5, 16, 30]);
+    compare("Runge-Kutta", &scene.path("case.toml"), &[&sets[..], &["scheme.method=rk-dgfem"]].concat(), &[7, 30]);
+    let run = |threads: usize| {
+        let sets: String = sets.iter().map(|set| format!(" --set {set}")).collect();
+        scene.run(&format!("run case.toml --out on{threads} --threads {threads}{sets}"));
+        scene.path(&format!("on{threads}"))
+    };
+    let [one, two, four] = [1, 2, 4].map(run);
+    assert_same("2 threads", &one, &two);
+    assert_same("4 threads", &one, &four);
+}
+
+#[test]
 fn a_limiter_with_its_rescue() {
     let scene = Bench::new();
     let sets = [

@@ -170,7 +170,9 @@ fn any_number_of_ranks_has_the_bits_of_one() {
     let common = [QUIET, CELLS, wall, "regrid=[]"];
     let jitter = "cloud={layout=\"jitter\",seed=1,amount=0.2}";
     compare("jitter", &case, &[&common[..], &[ELASTIC, jitter]].concat(), 4);
+    compare("springs, regrid", &case, &[QUIET, CELLS, ELASTIC, "scheme.springs=true"], 3);
     let fem = ["scheme.method=rk-dgfem", "scheme.degree=3"];
+    compare("Runge-Kutta, springs", &case, &[&common[..], &[ELASTIC, "scheme.springs=true"], &fem].concat(), 2);
     compare("Runge-Kutta", &case, &[&common[..], &[ELASTIC], &fem].concat(), 3);
     let at_nodes = ["scheme.method=ader-dgfem", "scheme.degree=1"];
     compare("ADER-DGFEM, J2", &case, &[&common[..], &at_nodes].concat(), 2);

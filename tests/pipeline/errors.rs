@@ -241,3 +241,34 @@ fn the_commands_that_a_first_scene_prints_can_be_pasted_where_paths_have_blanks(
     let commands: Vec<&str> = said.lines().filter_map(|line| line.strip_prefix("  dgmpm ")).collect();
     assert_eq!(commands, ["run 'my plates/the plate.toml'", "plot 'runs/the plate'"], "{said}");
 }
+
+#[test]
+fn springs_that_faces_cannot_have_are_refused_before_matrices_are_made_and_a_folder_is_there() {
+    let bench = Bench::new();
+    let j2 = SCENE.replace("law = \"neo-hookean\"", "law = \"j2\"\nyield_stress = 4e8\nhardening = 1e10");
+    bench.write("j2.toml", j2);
+    for (sets, what, remedy) in [
+        ("case.toml --set scheme.springs=1", "`springs` is 1", "true or false"),
+        ("case.toml --set scheme.springs=true --set scheme.flux=rusanov", "here it is `rusanov`", "flux = \"dual\""),
+        (
+            "case.toml --set scheme.springs=true --set limiter.kind=moment",
+            "here it is `rusanov`, which the limiter `moment` brings",
+            "flux = \"dual\"",
+        ),
+        ("case.toml --set scheme.springs=true --set scheme.degree=0", "at degree 0 the jump", "degree 1 or more"),
+        ("j2.toml --set scheme.springs=true", "a law with internal variables has no springs", "another law"),
+    ] {
+        for command in ["check", "preprocess", "run"] {
+            let output = bench.command(&format!("{command} {sets}")).output().unwrap();
+            let message = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert_eq!(output.status.code(), Some(2), "{command} {sets}: {message}");
+            assert_eq!(message.matches("error: ").count(), 1, "{command} {sets}: {message}");
+            assert!(message.contains(what) && message.contains(remedy), "{command} {sets}: {message}");
+            assert!(message.contains("scheme.springs") && output.stdout.is_empty(), "{command} {sets}: {message}");
+        }
+    }
+    // The two scenes, and nothing that was written.
+    assert_eq!(std::fs::read_dir(bench.path(".")).unwrap().count(), 2);
+    bench.run("check case.toml --set scheme.springs=true");
+    bench.run("check case.toml --set scheme.springs=true --set limiter.kind=moment --set scheme.flux=dual");
+}

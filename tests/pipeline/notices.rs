@@ -305,3 +305,40 @@ fn a_path_says_that_the_points_come_from_a_file() {
     assert!(message.contains("[cloud] has a `path` and another `layout`"), "{message}");
     assert!(message.contains("layout = \"file\""), "{message}");
 }
+
+#[test]
+fn a_start_from_a_snapshot_of_a_run_with_other_springs_is_said() {
+    let bench = Bench::new();
+    for (name, springs) in [("plain", false), ("springs", true)] {
+        bench.run(&format!("run case.toml --out {name} --set scheme.springs={springs} --set checkpoint.every_steps=5"));
+        let states = bench.snapshots(name);
+        // Four faces of two points, and two numbers each.
+        let creep = if springs { 8 * 4 * 2 * 2 } else { 0 };
+        assert!(states.iter().all(|state| state.creep.len() == creep), "{name}");
+        // A file without springs has no such array at all.
+        let bytes = std::fs::read(bench.path(&format!("{name}/snapshots/{:06}.h5", states[0].step))).unwrap();
+        assert_eq!(bytes.windows(5).any(|word| word == b"creep"), springs, "{name}");
+    }
+    let step = bench.snapshots("plain")[0].step;
+    let said = |command: &str, from: &str, springs: bool| {
+        let initial = format!("initial={{snapshot=\"{from}/snapshots/{step:06}.h5\"}}");
+        let out = if command == "run" { "--out on --force" } else { "" };
+        bench.run(&format!("{command} case.toml {out} --set {initial} --set scheme.springs={springs}"))
+    };
+    for command in ["check", "run"] {
+        let told = said(command, "plain", true);
+        assert!(told.contains("note: the snapshot has no creep of faces"), "{told}");
+        let told = said(command, "springs", false);
+        assert!(told.contains("note: the snapshot has the creep of faces of a run with springs"), "{told}");
+        for springs in [false, true] {
+            let told = said(command, if springs { "springs" } else { "plain" }, springs);
+            assert!(!told.contains("the snapshot has"), "{told}");
+        }
+    }
+    // What the last of them has from the snapshot goes on as in the run that did not stop.
+    assert_eq!(bits(&bench.last("on").creep), bits(&bench.last("springs").creep));
+    for (name, springs) in [("plain", "true"), ("springs", "false")] {
+        let message = bench.fail(2, &format!("resume {name} --set scheme.springs={springs} --set time.end=2e-4"));
+        assert!(message.contains("the checkpoint is of another scene: `scheme.springs` was"), "{message}");
+    }
+}

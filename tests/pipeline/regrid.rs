@@ -2,7 +2,7 @@
 
 use crate::common::{Bench, SCENE};
 use dgmpm::parts::io::mesh_file;
-use dgmpm::parts::mesh::{Mesh, rectangle};
+use dgmpm::parts::mesh::{BoundaryEdge, Mesh, rectangle};
 
 /// [`SCENE`] with a [[regrid]].
 fn bench(rule: &str) -> Bench {
@@ -295,5 +295,75 @@ fn plastic_runs_of_all_methods_go_from_grid_to_grid() {
         let middle = yielded[yielded.len() / 2];
         assert!((0.018..0.035).contains(&middle), "{method}: {middle}");
         bench.run("export run");
+    }
+}
+
+/// Cells 0, 1, 4 and 5 of the 4 x 2 stay, the right half is divided along x.
+fn half_divided() -> Mesh {
+    let mut new = rectangle([1.0, 0.5], [6, 2]).unwrap();
+    new.nodes.iter_mut().enumerate().for_each(|(node, x)| x[0] = [0.0, 0.25, 0.5, 0.625, 0.75, 0.875, 1.0][node % 7]);
+    new
+}
+
+#[test]
+fn the_creep_of_faces_goes_over_between_cells_that_are_copies_and_begins_at_0_elsewhere() {
+    let bench = Bench::new();
+    bench.run("run case.toml --out whole --set scheme.springs=true");
+    let states = bench.snapshots("whole");
+    let step = states[0].step;
+    bench.run(&format!("regrid whole --mesh whole/mesh.h5 --step {step} --out half"));
+    assert_eq!((&bench.last("half").u, &bench.last("half").creep), (&states[0].u, &states[0].creep));
+    bench.run("run half/scene.toml --out on");
+    assert_eq!((&bench.last("on").u, &bench.last("on").creep), (&states[1].u, &states[1].creep));
+    put(&bench, "divided.h5", &half_divided());
+    bench.run(&format!("regrid whole --mesh divided.h5 --step {step} --out divided"));
+    let (old, new) = (&states[0].creep, bench.last("divided").creep);
+    // Four numbers a face of two points: left, right, bottom, top.
+    let of = |creep: &[f64], cell: usize, face: usize| creep[16 * cell + 4 * face..][..4].to_vec();
+    for (cell, twin) in [(0, 0), (1, 1), (6, 4), (7, 5)] {
+        for face in 0..4 {
+            let stays = face != 1 || cell % 6 == 0;
+            let wanted = if stays { of(old, twin, face) } else { vec![0.0; 4] };
+            assert_eq!(of(&new, cell, face), wanted, "cell {cell}, face {face}");
+        }
+    }
+    assert!((0..12).filter(|cell| cell % 6 > 1).all(|cell| (0..4).all(|face| of(&new, cell, face) == [0.0; 4])));
+    assert!(of(old, 0, 1).iter().all(|a| *a != 0.0) && of(old, 1, 1) != [0.0; 4], "{old:?}");
+    // The same cells, cut along an edge: both its sides are new.
+    let mut cut = rectangle([1.0, 0.5], [4, 2]).unwrap();
+    cut.edges.push(BoundaryEdge { cell: 1, face: 1, group: 1 });
+    put(&bench, "cut.h5", &cut);
+    bench.run(&format!("regrid whole --mesh cut.h5 --step {step} --out cut"));
+    let new = bench.last("cut").creep;
+    for (cell, face) in (0..8).flat_map(|cell| (0..4).map(move |face| (cell, face))) {
+        let is_cut = [(1, 1), (2, 0)].contains(&(cell, face));
+        let wanted = if is_cut { vec![0.0; 4] } else { of(old, cell, face) };
+        assert_eq!(of(&new, cell, face), wanted, "cell {cell}, face {face}");
+    }
+    put(&bench, "other.h5", &distorted());
+    bench.run(&format!("regrid whole --mesh other.h5 --step {step} --out other"));
+    assert!(bench.last("other").creep.iter().all(|a| *a == 0.0));
+}
+
+#[test]
+fn a_regrid_books_the_energy_of_the_springs_that_it_leaves() {
+    let ledger = "[[output]]\nkind = \"ledger\"\nevery_steps = 1\n";
+    let bench = Bench::new();
+    put(&bench, "divided.h5", &half_divided());
+    put(&bench, "other.h5", &distorted());
+    for (mesh, keeps) in [("divided.h5", true), ("other.h5", false)] {
+        let rule = format!("[[regrid]]\nat = [5e-5]\nmesh = \"{mesh}\"\n");
+        bench.write("case.toml", format!("{SCENE}{rule}{ledger}"));
+        bench.run("run case.toml --force --set scheme.springs=true");
+        let (header, rows) = bench.table("runs/case/ledger.csv");
+        let column = |name: &str| header.iter().position(|known| known == name).unwrap();
+        let [total, faces, lost, left] =
+            ["total_energy", "face_energy", "regrid_dissipation", "remainder"].map(|name| column(name));
+        let at = rows.iter().position(|row| row[lost] != 0.0).unwrap();
+        let stored = |row: usize| rows[row][faces];
+        // Of the halves that the wave has reached by then the left one stays.
+        assert!(stored(at - 1) > 0.0 && if keeps { stored(at) > 0.0 } else { stored(at) < 0.1 * stored(at - 1) });
+        // The remainder is rounding, of the energy at the start.
+        assert!(rows.iter().all(|row| row[left].abs() < 1e-11 * rows[0][total]), "{mesh}");
     }
 }
