@@ -55,6 +55,9 @@ pub(crate) use with_nodes;
 /// Nodes of a cell of the largest degree that steps are compiled for, 6.
 pub const MOST_NODES: usize = 49;
 
+/// Points of a face of such a cell.
+pub const MOST_FACE_POINTS: usize = 7;
+
 /// Everything that the step needs of mesh and cloud.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Operators {

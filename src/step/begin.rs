@@ -92,7 +92,7 @@ impl Begin<'_> {
         self.scratch.phases.book(phase, clock);
     }
 
-    /// U_p = sum_a Phi_a(X_p) U_a (22), and b at the points.
+    /// U_p = sum_a Phi_a(X_p) U_a (22), and b and what springs hold at the points.
     fn grid_to_points(&mut self) {
         let (block, Some(points)) = (self.block, self.block.points()) else { return };
         let n = block.scheme.operators.nodes();
@@ -103,6 +103,13 @@ impl Begin<'_> {
             ask_for(later, 0);
             let points = &mut arrays.start;
             block.scheme.kernel.run(FieldsToPoints::<_, UNKNOWNS> { matrices, fields, nodes, between, points });
+            if !arrays.held.is_empty() {
+                let start = phases.start();
+                block.held_rate(self.state, &mut arrays.held_at_nodes);
+                let (fields, points) = (&arrays.held_at_nodes[..], &mut arrays.held);
+                block.scheme.kernel.run(FieldsToPoints::<_, UNKNOWNS> { matrices, fields, nodes, between, points });
+                phases.book_part(Part::Springs, start);
+            }
         });
         if built::SOURCES && !block.scheme.sources.is_empty() {
             let count = block.scheme.operators.block_points(block.number);

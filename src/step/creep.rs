@@ -85,11 +85,11 @@ impl<'a> Springs<'a> {
             }
         }
         store_array(lifted, lift);
-        let (inverse, [minus, plus]) = (L::splat(1.0) / length, sides);
+        let (forgotten, [minus, plus]) = (L::splat(1.0 + creep::FORGETS) / length, sides);
         // No closures: the compiler need not inline them, and a call stands without the features of the processor.
         let mut moved = [L::zero(); AXES];
         for i in 0..AXES {
-            moved[i] = point.admittance * (plus.t[i] - minus.t[i] - pull[i] * inverse);
+            moved[i] = point.admittance * (plus.t[i] - minus.t[i] - pull[i] * forgotten);
         }
         let rate = creep::turned_back(point.rotation, moved);
         for (i, rate) in rate.iter().enumerate() {
@@ -208,7 +208,7 @@ impl Block<'_> {
             let admittance = self.face_point(face, point, lane).admittance(inside);
             let back = admittance * dot(pull, along);
             (0..DEFORMATION).for_each(|k| flux[k] += back * along[k / 2] * normal[k % 2]);
-            let velocity = -admittance * dot(inside.t, along) - back;
+            let velocity = -admittance * dot(inside.t, along) - (1.0 + creep::FORGETS) * back;
             springs.follow(at, lane, [1.0, 0.0], along.map(|along| velocity * along));
             return flux;
         }
@@ -217,7 +217,8 @@ impl Block<'_> {
         let seen = Trace { t: [0, 1].map(|i| inside.t[i] + pull[i]), ..*inside };
         let flux = flux(&seen);
         let back = times([flux[0], flux[1], flux[2], flux[3]], normal);
-        springs.follow(at, lane, rotation, [0, 1].map(|i| -back[i] - inside.v[i]));
+        let forgets = creep::FORGETS * self.face_point(face, point, lane).admittance(inside);
+        springs.follow(at, lane, rotation, [0, 1].map(|i| -back[i] - inside.v[i] - forgets * pull[i]));
         flux
     }
 
@@ -242,7 +243,12 @@ impl Block<'_> {
         let moved = |t: [f64; 2]| summed_impedance([minus, plus], normal, density).solve(t);
         let back = moved(pull);
         (0..DEFORMATION).for_each(|k| flux[k] += back[k / 2] * normal[k % 2]);
-        springs.follow(at, lane, rotation, moved([0, 1].map(|i| plus.t[i] - minus.t[i] - pull[i])));
+        springs.follow(
+            at,
+            lane,
+            rotation,
+            moved([0, 1].map(|i| plus.t[i] - minus.t[i] - (1.0 + creep::FORGETS) * pull[i])),
+        );
     }
 }
 

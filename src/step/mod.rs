@@ -30,6 +30,7 @@ mod finish;
 mod flux;
 mod flux_of_blocks;
 mod health;
+mod held_rate;
 pub mod history;
 mod law;
 
@@ -139,9 +140,10 @@ impl Work {
         let points =
             operators.points.as_ref().map_or(0, |p| p.first.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0));
         let creep = if state.creep.is_empty() { 0 } else { scheme.creep_of_block() };
+        let added = predictor::Added { sources: !scheme.sources.is_empty(), springs: creep > 0 };
         let scratch = || {
             Mutex::new(Scratch {
-                points: predictor::Arrays::new(points, operators.line.m, &scheme.method, !scheme.sources.is_empty()),
+                points: predictor::Arrays::new(points, operators.line.m, &scheme.method, added),
                 nodes: volume::Arrays::new(operators.line.m, state.components, creep),
                 phases: phase::Ticks::of(2 * operators.blocks.len() * scheme.stages()),
             })

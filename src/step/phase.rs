@@ -60,7 +60,7 @@ pub enum Part {
     CellBalance,
     /// Bodies that keep their angular momentum: with the corrections.
     AngularMomentum,
-    /// Springs in the faces between cells: in the flux. Those at boundaries and between materials are with the conditions.
+    /// Springs in the faces between cells: in the flux and, of ADER, before the predictor. Those at boundaries and between materials are with the conditions.
     Springs,
 }
 

@@ -23,7 +23,7 @@ use transfer::{ToNodes, ToPoints};
 pub struct Arrays {
     /// U_p^n.
     pub start: Vec<F8>,
-    /// U_p^n and what the sources add until a time node, [p][6]; empty without sources.
+    /// U_p^n and what sources and springs add until a time node, [p][6]; empty without any.
     shifted: Vec<F8>,
     /// r_k,p of the sweep before and of this one, [k][p][6].
     pub rates: [Vec<F8>; 2],
@@ -31,6 +31,10 @@ pub struct Arrays {
     q: Vec<F8>,
     /// Sources b at points and time nodes, [k][p][2]; empty without sources.
     pub source: Vec<F8>,
+    /// dp/dt by the springs of the faces ([`super::held_rate`]) at the nodes, [6][a], the rows of F being 0; empty without springs.
+    pub held_at_nodes: Vec<F8>,
+    /// The same at the points, [p][6].
+    pub held: Vec<F8>,
     /// Time averages of F and v, [p][6].
     pub mean: Vec<F8>,
     /// Time averages of P, [p][4].
@@ -43,17 +47,29 @@ pub struct Arrays {
     pub ticks: u64,
 }
 
+/// What adds to the momentum in a step beside the stress.
+#[derive(Debug, Clone, Copy)]
+pub struct Added {
+    /// Sources.
+    pub sources: bool,
+    /// Springs of the faces.
+    pub springs: bool,
+}
+
 impl Arrays {
     /// For at most `points` points a cell and m nodes a direction.
-    pub fn new(points: usize, m: usize, method: &Method, sources: bool) -> Self {
+    pub fn new(points: usize, m: usize, method: &Method, added: Added) -> Self {
         let Method::Ader { time, sweeps } = method else { return Self::default() };
         let zeros = |fields: usize| vec![F8::ZERO; fields * points];
+        let zeros_if = |wanted: bool, fields: usize| if wanted { zeros(fields) } else { vec![] };
         Self {
             start: zeros(UNKNOWNS),
-            shifted: if sources { zeros(UNKNOWNS) } else { vec![] },
+            shifted: zeros_if(added.sources || added.springs, UNKNOWNS),
             rates: [zeros(UNKNOWNS * sweeps.widest()), zeros(UNKNOWNS * sweeps.widest())],
             q: zeros(UNKNOWNS),
-            source: if sources { zeros(AXES * time.len()) } else { vec![] },
+            source: zeros_if(added.sources, AXES * time.len()),
+            held_at_nodes: if added.springs { vec![F8::ZERO; UNKNOWNS * m * m] } else { vec![] },
+            held: zeros_if(added.springs, UNKNOWNS),
             mean: zeros(UNKNOWNS),
             mean_stress: zeros(DEFORMATION),
             between: vec![F8::ZERO; transfer::factors(m, points, UNKNOWNS)],
@@ -163,7 +179,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
     }
 
-    /// U^n + dt rho0 sum_k B[k] b_k, where there are sources.
+    /// U^n + dt sum_k B[k] (rho0 b_k + dp/dt of the springs), where there are sources or springs.
     #[inline(always)]
     fn shift<L: Lanes>(&self, arrays: &mut Arrays, row: &[f64]) {
         if arrays.shifted.is_empty() {
@@ -171,6 +187,22 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
         let np = self.matrices.points();
         arrays.shifted[..UNKNOWNS * np].copy_from_slice(&arrays.start[..UNKNOWNS * np]);
+        if !arrays.held.is_empty() {
+            let mut sum = 0.0;
+            for entry in row {
+                sum += entry;
+            }
+            let factor = L::splat(self.dt * sum);
+            let held = arrays.held.as_chunks::<UNKNOWNS>().0;
+            for (held, u) in held.iter().zip(arrays.shifted.as_chunks_mut::<UNKNOWNS>().0).take(np) {
+                for k in DEFORMATION..UNKNOWNS {
+                    factor.mul_add(L::load(&held[k]), L::load(&u[k])).store(&mut u[k]);
+                }
+            }
+        }
+        if arrays.source.is_empty() {
+            return;
+        }
         for (k, entry) in row.iter().enumerate() {
             let factor = L::splat(self.dt * self.law.density() * entry);
             for p in 0..np {
