@@ -357,8 +357,7 @@ fn a_regrid_books_the_energy_of_the_springs_that_it_leaves() {
         bench.run("run case.toml --force --set scheme.springs=true");
         let (header, rows) = bench.table("runs/case/ledger.csv");
         let column = |name: &str| header.iter().position(|known| known == name).unwrap();
-        let [total, faces, lost, left] =
-            ["total_energy", "face_energy", "regrid_dissipation", "remainder"].map(|name| column(name));
+        let [total, faces, lost, left] = ["total_energy", "face_energy", "regrid_dissipation", "remainder"].map(column);
         let at = rows.iter().position(|row| row[lost] != 0.0).unwrap();
         let stored = |row: usize| rows[row][faces];
         // Of the halves that the wave has reached by then the left one stays.
