@@ -49,7 +49,7 @@ const FORMULAS: &[(&str, &str, &str)] = &[
         "F, p <- mean + alpha (F, p - mean), alpha so that corners stay among the means around them",
     ),
     ("[scheme]", "angular_momentum", "p <- p + rho0 omega E (x - x_c), one omega a body"),
-    ("[scheme]", "springs", "v* = mean v + Y ([t] - k R a), da/dt = R^T Y ([t] - k R a), k = beta M / l"),
+    ("[scheme]", "springs", "v* = mean v + Y ([t] - k R a), da/dt = R^T Y ([t] - 1.03 k R a), k = beta M / l"),
     ("[[output]]", "fields", "F, p, u and internal variables as they are"),
     ("[[output]]", "line", "the polynomials at X_i = from + i (to - from) / (samples - 1)"),
     ("[[output]]", "ledger", "E(t) = E(0) + works - dissipations, each as the step has it"),

@@ -18,12 +18,11 @@
 use crate::lane::Lane;
 
 /// beta by degree. A ring of straight cells (2 x 32) that vibrates keeps in two periods .10, .51 and .64 of its energy without springs (N = 1, 2,
-/// 3), .41, .71 and .85 with .03, .96 (N = 2) and .99 (N = 3) with .3. What lasts sees v* = mean v, a central flux, which has the order N alone where N is
+/// 3), .63 and .92 with .1 (N = 1, 3), .76, .925 and .967 with .3. What lasts sees v* = mean v, a central flux, which has the order N alone where N is
 /// odd: with .3 the errors of the manufactured problem grow by 12, 36 and 83 % at N = 3 (8, 16, 32 cells), by 1 and 4 % (8 and 16 cells) with .03; at
-/// even N by 2, 1 and 5 %. At N = 1 ADER has a reason of its own: its predictor sees no neighbours and drives slow motions of faces, by which the ring gains
-/// .8 % with .3 between two of its extremes, nothing with .03. At N = 0 a jump is all that a cell knows of its neighbour, and nothing is held.
+/// even N by 2, 1 and 5 %. At N = 0 a jump is all that a cell knows of its neighbour, and nothing is held.
 /// A law with memory has no springs: where it flows jumps of traction last, and what holds the faces then makes a Taylor bar (S1 to S3) gain
-/// .8, .12 and .5 % where it gains .01, .05 and .2 % without. (Measured with the whole of k at free sides, too.)
+/// .8, .12 and .5 % where it gains .01, .05 and .2 % without. (Measured with the whole of k at free sides.)
 const SPRING: [f64; 7] = [0.0, 0.03, 0.3, 0.03, 0.3, 0.03, 0.3];
 
 /// epsilon, what springs forget: in 1/epsilon relaxation times, a thousand lengths of a cell over c_p, what they hold. A jump that is held grows
