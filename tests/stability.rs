@@ -116,6 +116,20 @@ fn held_jumps_of_the_displacement_make_the_step_of_degree_one_shorter_and_no_gro
     }
 }
 
+/// With what faces have crept among the unknowns, in a patch and in a body: the springs of faces give back what they take.
+#[test]
+fn springs_that_give_back_the_creep_of_faces_make_no_energy() {
+    let free = [(); 4].map(|()| "free".to_owned());
+    for degree in ["1", "2"] {
+        let sets = ["scheme.method=ader-dgfem", "scheme.springs=true", &format!("scheme.degree={degree}")];
+        let body = Setup { domain: Domain::Body([2, 2], free.clone()), semi_discrete: true, ..patch(&sets) };
+        for (name, found) in [("patch", rates(&sets)), ("body", measure(&body, ASKED).unwrap())] {
+            println!("{name} S{degree}: {found:?}");
+            assert!(found.energy < 4e-9 && found.definite && found.growth < 1e-9, "{name} S{degree}: {found:?}");
+        }
+    }
+}
+
 #[test]
 fn degree_0_holds_no_jump_and_its_default_step_does_not_grow() {
     for method in ["rk-dgfem", "ader-dgfem"] {

@@ -136,6 +136,13 @@ impl<'a> Assembler<'a> {
         }
     }
 
+    /// The unknown that is the same as unknown `at`: the creep of a face, which both of its cells keep.
+    fn twin(&self, at: usize) -> Option<usize> {
+        let (stride, nodes) = (self.problem.per_cell(), self.problem.at_nodes());
+        let k = (at % stride).checked_sub(nodes)?;
+        self.problem.twin_of_creep(at / stride, k).map(|(cell, k)| cell * stride + nodes + k)
+    }
+
     /// Adds `factor` step(U + amount direction) / D to `out`.
     fn add_image(
         &self,
@@ -185,7 +192,11 @@ impl<'a> Assembler<'a> {
         let mut image = vec![0.0; self.base.len()];
         for (courant, weight) in courant {
             self.along(m, direction, how, self.problem.dt(courant), &mut image);
-            direction.iter().for_each(|&(at, value)| image[at] -= value);
+            direction.iter().for_each(|&(at, value)| {
+                image[at] -= value;
+                // What two cells keep has moved in both.
+                self.twin(at).into_iter().for_each(|at| image[at] -= value);
+            });
             out.iter_mut().zip(&image).for_each(|(out, image)| *out += weight / courant * image);
         }
         out

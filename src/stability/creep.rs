@@ -37,16 +37,20 @@ impl Problem {
 
     /// Gives number k of the creep of a cell a value, on both sides of its face.
     pub(super) fn set_creep(&self, state: &mut State, cell: usize, k: usize, value: f64) {
-        let (blocks, count) = (&self.scheme.operators.blocks, self.scheme.creep_of_block());
-        let (block, lane) = blocks.slot[cell];
-        state.creep[block * count + k].0[lane] = value;
-        let (m, of_face) = (self.scheme.operators.line.m, count / FACES);
-        let (face, point, axis) = (k / of_face, k % of_face / AXES, k % AXES);
-        if let Some(across) = self.beyond(cell, face) {
-            let point = if across.flip { m - 1 - point } else { point };
-            let there = across.face / FACES * count + across.face % FACES * of_face + AXES * point + axis;
-            state.creep[there].0[across.lane] = value;
+        for (cell, k) in std::iter::once((cell, k)).chain(self.twin_of_creep(cell, k)) {
+            let (block, lane) = self.scheme.operators.blocks.slot[cell];
+            state.creep[block * self.scheme.creep_of_block() + k].0[lane] = value;
         }
+    }
+
+    /// The cell and the number of the creep beyond a face that are the same as number k of a cell; none at the boundary.
+    pub(super) fn twin_of_creep(&self, cell: usize, k: usize) -> Option<(usize, usize)> {
+        let (m, of_face) = (self.scheme.operators.line.m, self.scheme.creep_of_block() / FACES);
+        let (face, point, axis) = (k / of_face, k % of_face / AXES, k % AXES);
+        let across = self.beyond(cell, face)?;
+        let point = if across.flip { m - 1 - point } else { point };
+        let there = self.scheme.operators.blocks.cells[across.face / FACES][across.lane];
+        Some((there, across.face % FACES * of_face + AXES * point + axis))
     }
 
     /// k l of a face of a cell, Pa; 0 where it has no spring.
