@@ -32,7 +32,7 @@ mod flux_of_blocks;
 mod health;
 pub mod history;
 mod law;
-
+mod law_cost;
 mod lift;
 mod loss;
 mod meeting_flux;
@@ -53,6 +53,7 @@ mod scheme;
 mod segments;
 mod shape;
 mod shared;
+mod shares;
 mod sources;
 mod spring_faces;
 mod stage;
@@ -63,6 +64,7 @@ mod tile_memory;
 mod tiles;
 mod trace;
 mod volume;
+mod weights;
 mod whole_faces;
 mod worst;
 
@@ -82,6 +84,7 @@ pub use phase::{Part, Phase, Phases};
 pub use rescue::Rescue;
 pub use runge_kutta::Tableau;
 pub use scheme::{Method, Scheme};
+pub use shares::{Imbalance, Shares};
 pub use segments::DeepestOverlap;
 pub use survey::{Speeds, Survey};
 pub use sweeps::Sweeps;
@@ -168,6 +171,11 @@ impl Work {
             sum.add(&scratch.phases.take(rate));
         }
         sum
+    }
+
+    /// Adds the step that was done last to the shares of threads and ranks, see [`Shares`].
+    pub fn add_shares(&mut self, to: &mut Shares) {
+        self.tiles.add_shares(self.rate.measure(), to);
     }
 
     /// Bytes that are held for single effects, see [`Held`].
