@@ -84,8 +84,8 @@ pub use phase::{Part, Phase, Phases};
 pub use rescue::Rescue;
 pub use runge_kutta::Tableau;
 pub use scheme::{Method, Scheme};
-pub use shares::{Imbalance, Shares};
 pub use segments::DeepestOverlap;
+pub use shares::{Imbalance, Shares};
 pub use survey::{Speeds, Survey};
 pub use sweeps::Sweeps;
 

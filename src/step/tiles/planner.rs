@@ -50,8 +50,13 @@ impl<'a> Planner<'a> {
         let count = graph.len();
         let mut tile = vec![0; count];
         ranges.iter().enumerate().for_each(|(number, range)| tile[range.clone()].fill(number));
-        let tile_of = |(number, range): (usize, Range<usize>)| {
-            Tile { events: vec![], phases: vec![], rates: 0, traces: 0, range, falls: number % 2 == 1 }
+        let tile_of = |(number, range): (usize, Range<usize>)| Tile {
+            events: vec![],
+            phases: vec![],
+            rates: 0,
+            traces: 0,
+            range,
+            falls: number % 2 == 1,
         };
         let tiles: Vec<Tile> = ranges.into_iter().enumerate().map(tile_of).collect();
         let slots = || tiles.iter().map(|_| Slots::default()).collect();

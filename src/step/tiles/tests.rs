@@ -132,7 +132,9 @@ fn equal(graph: &[Vec<usize>]) -> Vec<u64> {
 /// Checks the plan for so many tiles of blocks of these weights, whether it is worth it or not.
 fn check(graph: &[Vec<usize>], weights: &[u64], stages: usize, tiles: usize) -> Plan {
     let plan = Plan::of_tiles(graph, weights, stages, tiles);
-    assert!(plan.tiles.len() == tiles.min(graph.len()) && plan.phases() <= if tiles > 1 { graph.len() * stages } else { 1 });
+    assert!(
+        plan.tiles.len() == tiles.min(graph.len()) && plan.phases() <= if tiles > 1 { graph.len() * stages } else { 1 }
+    );
     assert_eq!(play(graph, stages, &plan), stage_by_stage(graph, stages));
     let events: usize = plan.tiles.iter().map(|tile| tile.events.len()).sum();
     assert_eq!(events, 2 * stages * graph.len(), "something is done twice");
