@@ -175,7 +175,8 @@ impl Work {
 
     /// Adds the step that was done last to the shares of threads and ranks, see [`Shares`].
     pub fn add_shares(&mut self, to: &mut Shares) {
-        self.tiles.add_shares(self.rate.measure(), to);
+        let rate = &self.rate;
+        self.tiles.add_shares(|| rate.measure(), to);
     }
 
     /// Bytes that are held for single effects, see [`Held`].

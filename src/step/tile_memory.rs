@@ -108,9 +108,10 @@ impl Tiles {
         }
     }
 
-    /// Adds a step to the shares of the tiles, with the seconds of so many ticks each since the last call.
-    pub fn add_shares(&mut self, rate: f64, to: &mut Shares) {
+    /// Adds a step to the shares of the tiles, with what they took since the last call at a `rate` of ticks per second.
+    pub fn add_shares(&mut self, rate: impl Fn() -> f64, to: &mut Shares) {
         if self.tiles.len() > 1 {
+            let rate = rate();
             let share = |tile: &mut Tile| [tile.weight as f64 / 1e9, std::mem::take(&mut tile.busy) as f64 / rate];
             to.add(self.tiles.iter_mut().map(share));
         }
