@@ -243,5 +243,5 @@ fn a_tile_of_heavy_blocks_has_fewer_of_them() {
     // A block that is heavier than all others together has a tile of its own, and no tile is empty.
     assert_eq!(divide(&[1, 1, 100_000, 1, 1], 3), [0..2, 2..3, 3..5]);
     assert_eq!(divide(&[100_000, 1, 1], 3), [0..1, 1..2, 2..3]);
-    assert_eq!(divide(&[], 3), []);
+    assert!(divide(&[], 3).is_empty());
 }
