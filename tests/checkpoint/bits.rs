@@ -143,9 +143,9 @@ fn any_number_of_threads_has_the_bits_of_one_where_one_half_of_the_body_costs_mo
             let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
             let imbalance = &summary["threads_imbalance"];
             assert_eq!(imbalance["seconds"].as_array().unwrap().len(), threads, "tiles");
-            // The mean of a tile and a block more: 25 blocks a tile at least, of which the heaviest is twice the mean.
+            // A tile has 25 blocks in the mean, and the mean and one block more at most: the heaviest is less than 4 times the mean.
             let predicted = imbalance["predicted"].as_f64().unwrap();
-            assert!((1.0..1.08).contains(&predicted), "{method}, {threads} threads: {predicted}");
+            assert!((1.0..1.16).contains(&predicted), "{method}, {threads} threads: {predicted}");
         }
     }
 }
