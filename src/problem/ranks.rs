@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::exchange::{self, first_that_differs};
 use crate::lane::Kernel;
 use crate::observe::{NewGrid, Observer, Schedule, View};
-use crate::run::Folder;
+use crate::run::{Folder, Report};
 use crate::words::Saved;
 
 impl Problem {
@@ -22,6 +22,13 @@ impl Problem {
         match self.scheme.exchange() {
             Some(exchange) => exchange::agree(exchange, result),
             None => result,
+        }
+    }
+
+    /// Gives all ranks what each of them has measured of its share of the steps. All ranks call it.
+    pub(super) fn gather_shares(&self, report: &mut Report) {
+        if let Some(exchange) = self.scheme.exchange() {
+            report.shares.gather(exchange, rayon::current_num_threads());
         }
     }
 

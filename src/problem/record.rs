@@ -75,6 +75,7 @@ impl Problem {
             let folder = writes.then_some(folder);
             self.solve(Solve { folder, observers, own, interrupt, checkpoints }, &mut report)
         });
+        self.gather_shares(&mut report);
         let result = match writes {
             true => self.conclude(ended, &mut report, folder, gauge, look),
             false => ended.map_err(|stop| self.settle(stop)),

@@ -35,6 +35,7 @@ impl Problem {
         let with = Solve { folder: None, observers: vec![], own: 0, interrupt: &never, checkpoints: None };
         let stop = self.solve(with, &mut report).err();
         let stop = stop.map(|stop| self.settle(stop));
+        self.gather_shares(&mut report);
         report.finish(&self.scheme, &self.state);
         stop.map_or(Ok(report), Err)
     }

@@ -4,7 +4,7 @@ use super::watch::{Alarm, Watch};
 use super::{Kept, Settings, Treated};
 use crate::state::{State, UNKNOWNS};
 use crate::step::phase::{NAMES, Phases};
-use crate::step::{Balance, DeepestOverlap, Held, Motion, Scheme, Survey, Totals};
+use crate::step::{Balance, DeepestOverlap, Held, Imbalance, Motion, Scheme, Shares, Survey, Totals};
 use cpu_time::ProcessTime;
 use serde_json::{Map, Value, json};
 use std::time::Instant;
@@ -20,6 +20,8 @@ pub struct Report {
     pub dt: [f64; 2],
     /// Seconds per phase, summed over threads.
     pub phases: Phases,
+    /// How the steps were divided among threads and ranks, since the run was begun or resumed.
+    pub shares: Shares,
     /// Seconds of each observer of the run, in their order, and how often it has observed.
     pub observed: Vec<(f64, usize)>,
     /// Seconds of the rescue: looking for lost cells, and stepping again.
@@ -66,6 +68,7 @@ impl Default for Report {
             ends: vec![],
             dt: [f64::INFINITY, 0.0],
             phases: Phases::default(),
+            shares: Shares::default(),
             observed: vec![],
             rescue: 0.0,
             regrids: (0.0, 0),
@@ -119,6 +122,7 @@ impl Report {
         self.dt = [self.dt[0].min(dt), self.dt[1].max(dt)];
         self.see(survey);
         self.phases.add(&work.take_phases());
+        work.add_shares(&mut self.shares);
         self.rescue += work.take_rescue_seconds();
         if let Some(balance) = &mut self.balance {
             work.settle(scheme, balance);
@@ -223,6 +227,9 @@ impl Report {
             ("min_j", json!(self.min_j)),
             ("max_curl_f", json!(last.max_curl)),
         ];
+        if let Some(shares) = shares_json(&self.shares) {
+            pairs.push(("threads_imbalance", shares));
+        }
         if let Some(drift) = last.max_drift {
             pairs.push(("max_drift", json!(drift)));
         }
@@ -268,6 +275,17 @@ impl Report {
         }
         work
     }
+}
+
+/// None where one thread has done all.
+fn shares_json(shares: &Shares) -> Option<Value> {
+    let of = |Imbalance { predicted, measured }| json!({ "predicted": predicted, "measured": measured });
+    let mut out = of(shares.of_threads()?);
+    out["seconds"] = json!(shares.seconds());
+    if let Some(ranks) = shares.of_ranks() {
+        out["ranks"] = of(ranks);
+    }
+    Some(out)
 }
 
 /// Null where the watch is off.

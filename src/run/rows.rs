@@ -2,7 +2,7 @@
 
 use super::Report;
 use crate::format::{Row, mebibytes, row, seconds};
-use crate::step::{Balance, DeepestOverlap, Totals, phase::NAMES};
+use crate::step::{Balance, DeepestOverlap, Imbalance, Totals, phase::NAMES};
 
 impl Report {
     /// What the run cost, and what became of energy and momentum.
@@ -15,6 +15,11 @@ impl Report {
         let all: f64 = self.phases.seconds.iter().sum();
         for (name, s) in NAMES.iter().zip(self.phases.seconds).filter(|(_, s)| *s > 0.0) {
             rows.push(row(format!("  {name}"), format!("{s:8.3} s {:5.1} %", 100.0 * s / all)));
+        }
+        for (who, imbalance) in [("threads", self.shares.of_threads()), ("ranks", self.shares.of_ranks())] {
+            let Some(Imbalance { predicted, measured }) = imbalance else { continue };
+            let text = format!("{measured:.3} (estimated {predicted:.3}): the most of one over the mean");
+            rows.push(row(format!("imbalance of {who}"), text));
         }
         rows.push(row("DoF-updates/s (CPU)", format!("{:.3e}", self.rate())));
         rows.push(row("memory", mebibytes(self.bytes)));

@@ -3,6 +3,7 @@
 use super::begin::Predict;
 use super::block_energy::StoredEnergy;
 use super::block_work::WithLaw;
+use super::law_cost::LawCost;
 use super::rotation::Power;
 use super::stage::AtNodes;
 use super::survey::Examine;
@@ -55,6 +56,8 @@ pub(super) trait BlockLaw: PointLaw {
     fn stored_energy(&self, kernel: Kernel, work: StoredEnergy) -> F8;
     /// The power of a change of F.
     fn power(&self, kernel: Kernel, work: Power) -> F8;
+    /// What it costs at a point.
+    fn cost(&self) -> LawCost;
 }
 
 impl<M: Material> BlockLaw for M {
@@ -84,5 +87,9 @@ impl<M: Material> BlockLaw for M {
 
     fn power(&self, kernel: Kernel, work: Power) -> F8 {
         kernel.run(WithLaw(*self, work))
+    }
+
+    fn cost(&self) -> LawCost {
+        LawCost::of(self)
     }
 }

@@ -33,7 +33,7 @@ mod health;
 mod held_rate;
 pub mod history;
 mod law;
-
+mod law_cost;
 mod lift;
 mod loss;
 mod meeting_flux;
@@ -54,6 +54,7 @@ mod scheme;
 mod segments;
 mod shape;
 mod shared;
+mod shares;
 mod sources;
 mod spring_faces;
 mod springs;
@@ -65,6 +66,7 @@ mod tile_memory;
 mod tiles;
 mod trace;
 mod volume;
+mod weights;
 mod whole_faces;
 mod worst;
 
@@ -85,6 +87,7 @@ pub use rescue::Rescue;
 pub use runge_kutta::Tableau;
 pub use scheme::{Method, Scheme};
 pub use segments::DeepestOverlap;
+pub use shares::{Imbalance, Shares};
 pub use survey::{Speeds, Survey};
 pub use sweeps::Sweeps;
 
@@ -172,6 +175,12 @@ impl Work {
             sum.add(&scratch.phases.take(rate));
         }
         sum
+    }
+
+    /// Adds the step that was done last to the shares of threads and ranks, see [`Shares`].
+    pub fn add_shares(&mut self, to: &mut Shares) {
+        let rate = &self.rate;
+        self.tiles.add_shares(|| rate.measure(), to);
     }
 
     /// Bytes that are held for single effects, see [`Held`].

@@ -12,7 +12,7 @@ use super::tiles::{Event, Slot};
 use super::worst::Worst;
 use super::{Scheme, Scratch, Speeds, Stage, Survey, Work, across, with_scratch};
 use crate::built;
-use crate::lane::{self, F8};
+use crate::lane::{self, F8, ticks};
 use crate::operators::Operators;
 use crate::state::State;
 use std::sync::Mutex;
@@ -38,9 +38,13 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
         if self.step.phase == 0 {
             self.tile.worst = Worst::NONE;
         }
+        let start = if self.step.shared { ticks() } else { 0 };
         for number in self.tile.plan.phases[self.step.phase].clone() {
             let event = self.tile.plan.events[number];
             if event.begins { self.begin(&event) } else { self.finish(&event) }
+        }
+        if self.step.shared {
+            self.tile.busy += ticks().wrapping_sub(start);
         }
     }
 
@@ -245,6 +249,8 @@ struct Step<'a, B, F> {
     /// See [`outside::Outside::first`].
     outside: &'a [u32],
     far: bool,
+    /// Whether there are several tiles: what each of them takes is measured.
+    shared: bool,
     meetings: Option<&'a Meetings>,
     scratch: &'a [Mutex<Scratch>],
     phase: usize,
@@ -316,7 +322,7 @@ impl Scheme {
             };
             let (seen, showing) = shown.split_at_mut(phase * count);
             let outside = &outside.first[..];
-            let (scheme, far, meetings) = (self, *far, meetings.as_deref());
+            let (scheme, far, shared, meetings) = (self, *far, count > 1, meetings.as_deref());
             let step = Step {
                 begin,
                 finish,
@@ -328,6 +334,7 @@ impl Scheme {
                 slots,
                 outside,
                 far,
+                shared,
                 meetings,
                 scratch,
                 phase,

@@ -3,7 +3,7 @@
 use super::ranks::Ranks;
 use super::tiles::{self, Plan, Slot};
 use super::worst::Worst;
-use super::{Scheme, volume};
+use super::{Scheme, Shares, volume};
 use crate::lane::F8;
 use crate::mesh::FACES;
 
@@ -17,6 +17,10 @@ pub(super) struct Tile {
     pub traces: Vec<F8>,
     /// The worst of its blocks after the last step.
     pub worst: Worst,
+    /// The estimate of a step of its blocks, ns.
+    weight: u64,
+    /// Ticks in its phases since they were last taken; 0 where it is the only tile.
+    pub busy: u64,
 }
 
 /// The tiles of a step.
@@ -45,10 +49,10 @@ impl Tiles {
         if let Some(contacts) = &scheme.contacts {
             contacts.link(&mut graph);
         }
-        let threads = rayon::current_num_threads().max(1);
+        let (threads, weights) = (rayon::current_num_threads().max(1), scheme.weights());
         let plan = match &scheme.exchange {
-            Some(exchange) => Plan::of_tiles(&graph, stages, threads * exchange.ranks()),
-            None => Plan::new(&graph, stages, threads),
+            Some(exchange) => Plan::of_tiles(&graph, &weights, stages, threads * exchange.ranks()),
+            None => Plan::new(&graph, &weights, stages, threads),
         };
         // Corrections of stages need all blocks of a stage at once.
         let plan = if scheme.corrects_stages() { plan.by_stages(stages) } else { plan };
@@ -60,7 +64,8 @@ impl Tiles {
                 (plan.rates, plan.traces) = (0, 0);
             }
             let rates = vec![F8::ZERO; plan.rates * stages * stride];
-            Tile { rates, traces: vec![], worst: Worst::NONE, plan }
+            let weight = weights[plan.range.clone()].iter().sum();
+            Tile { rates, traces: vec![], worst: Worst::NONE, weight, busy: 0, plan }
         };
         let mut out = Self {
             tiles: plan.tiles.into_iter().enumerate().map(tile).collect(),
@@ -100,6 +105,15 @@ impl Tiles {
         match &mut self.ranks {
             Some(ranks) => ranks.worst(worst),
             None => worst,
+        }
+    }
+
+    /// Adds a step to the shares of the tiles, with what they took since the last call at a `rate` of ticks per second.
+    pub fn add_shares(&mut self, rate: impl Fn() -> f64, to: &mut Shares) {
+        if self.tiles.len() > 1 {
+            let rate = rate();
+            let share = |tile: &mut Tile| [tile.weight as f64 / 1e9, std::mem::take(&mut tile.busy) as f64 / rate];
+            to.add(self.tiles.iter_mut().map(share));
         }
     }
 

@@ -24,6 +24,18 @@ impl Parts {
         self
     }
 
+    /// A rectangle whose left and right half are groups of so many cells each; all its sides are one group.
+    pub fn halves(&mut self, size: [f64; 2], cells: [usize; 2], groups: [&str; 2], side: &str) -> &mut Self {
+        let first = self.0.nodes.len();
+        for (half, group) in groups.into_iter().enumerate() {
+            let place = |u: f64, v: f64| [0.5 * size[0] * (u + half as f64), size[1] * v];
+            let outside = |there: bool| there.then_some(side);
+            self.block(place, cells, group, &[outside(half == 0), outside(half == 1), Some(side), Some(side)]);
+        }
+        self.merge(first, 1e-9 * size[0]);
+        self
+    }
+
     /// A disc of five blocks of n x n cells.
     pub fn disc(&mut self, centre: [f64; 2], radius: f64, n: usize, group: &str, side: &str) -> &mut Self {
         let first = self.0.nodes.len();

@@ -142,3 +142,28 @@ fn another_number_of_threads_and_a_later_end() {
     let steps: Vec<&str> = ledger.lines().skip(1).map(|row| row.split(',').next().unwrap()).collect();
     assert!(steps.windows(2).all(|pair| pair[0] != pair[1]), "no row twice: {steps:?}");
 }
+
+#[test]
+fn any_number_of_threads_has_the_bits_of_one_where_one_half_of_the_body_costs_more() {
+    let bench = Bench::new();
+    bench.of_mixed_body();
+    for method in ["ader-dgmpm", "rk-dgfem"] {
+        let run = |threads: usize| {
+            let name = format!("{method}_{threads}");
+            bench.run(&format!("run mixed.toml --out {name} --threads {threads} --set scheme.method={method}"));
+            bench.path(&name)
+        };
+        let one = run(1);
+        for threads in 2..=4 {
+            let several = run(threads);
+            assert_same(&format!("{method}, {threads} threads"), &one, &several);
+            let text = std::fs::read_to_string(several.join("summary.json")).unwrap();
+            let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+            let imbalance = &summary["threads_imbalance"];
+            assert_eq!(imbalance["seconds"].as_array().unwrap().len(), threads, "tiles");
+            // A tile has 25 blocks in the mean, and the mean and one block more at most: the heaviest is less than 4 times the mean.
+            let predicted = imbalance["predicted"].as_f64().unwrap();
+            assert!((1.0..1.16).contains(&predicted), "{method}, {threads} threads: {predicted}");
+        }
+    }
+}

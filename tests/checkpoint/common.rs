@@ -27,6 +27,21 @@ impl Bench {
         std::fs::write(self.path("parts.toml"), text).unwrap();
     }
 
+    /// Writes `mixed.toml`, a scene of a body in a hundred blocks. Those of its left half flow, those of its right half have 25 points a cell
+    /// and matrices of their own.
+    pub fn of_mixed_body(&self) {
+        Parts::default().halves([2.0, 1.0], [20, 20], ["left", "right"], "out").write(&self.path("."));
+        let steel = "young = 2e11, poisson = 0.3, density = 7800";
+        let text = format!(
+            "title = \"mixed\"\nmesh.file = \"mesh.msh\"\nboundary = [{{ group = \"out\", kind = \"free\" }}]\nmaterial = [\n\
+             {{ group = \"left\", law = \"j2\", {steel}, yield_stress = 4e8, hardening = 1e9 }},\n\
+             {{ group = \"right\", law = \"neo-hookean\", {steel}, layout = \"jitter\", per_direction = 5 }}]\n\
+             [initial]\nvelocity = [\"-200*step(x - 0.9)\", \"20*x*y\"]\n[scheme]\nmethod = \"ader-dgmpm\"\ndegree = 2\n\
+             [time]\nend = 7e-6\n[[output]]\nkind = \"ledger\"\n[[output]]\nkind = \"fields\"\nevery = 3.5e-6\n"
+        );
+        std::fs::write(self.path("mixed.toml"), text).unwrap();
+    }
+
     /// Writes `parts.toml`, a scene of two bodies that meet and slide.
     pub fn of_two_bodies(&self) {
         let mut parts = Parts::default();

@@ -176,6 +176,8 @@ fn any_number_of_ranks_has_the_bits_of_one() {
     compare("Runge-Kutta", &case, &[&common[..], &[ELASTIC], &fem].concat(), 3);
     let at_nodes = ["scheme.method=ader-dgfem", "scheme.degree=1"];
     compare("ADER-DGFEM, J2", &case, &[&common[..], &at_nodes].concat(), 2);
+    bench.of_mixed_body();
+    compare("half J2, half jitter", &bench.path("mixed.toml"), &[QUIET], 3);
 }
 
 #[test]

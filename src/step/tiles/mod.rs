@@ -8,11 +8,13 @@
 //! those where they end: what waits at them would leave the cache meanwhile.) Nothing is done twice, nothing but these traces goes
 //! from one processor to another, and the bits do not depend on it.
 
+mod division;
 mod planner;
 
 use crate::lane::LANES;
 use crate::mesh::FACES;
 use crate::operators::{Blocks, Neighbour};
+use division::divide;
 use planner::Planner;
 use std::ops::Range;
 
@@ -82,17 +84,17 @@ pub struct Plan {
 }
 
 /// Events in the time of which threads meet.
-const MEETING: usize = 16;
+const MEETING: u128 = 16;
 
 impl Plan {
-    /// A plan for as many tiles of equal size, up to `threads`, as make the longest way through the step shorter by a
-    /// quarter at least: threads that wait for each other are other people's time.
-    pub fn new(graph: &[Vec<usize>], stages: usize, threads: usize) -> Self {
-        let mut best = Planner::new(graph, stages, 1).plan();
+    /// A plan for as many tiles of nearly equal weight, up to `threads`, as make the longest way through the step shorter by a
+    /// quarter at least: threads that wait for each other are other people's time. `weights` are those of the blocks.
+    pub fn new(graph: &[Vec<usize>], weights: &[u64], stages: usize, threads: usize) -> Self {
+        let mut best = Self::of_tiles(graph, weights, stages, 1);
         let mut tiles = threads;
         while tiles > 1 {
-            let found = Planner::new(graph, stages, tiles).plan();
-            if 4 * found.longest() < 3 * best.longest() {
+            let found = Self::of_tiles(graph, weights, stages, tiles);
+            if 4 * found.longest(weights) < 3 * best.longest(weights) {
                 best = found;
             }
             tiles /= 2;
@@ -100,9 +102,9 @@ impl Plan {
         best
     }
 
-    /// A plan for so many tiles of equal size.
-    pub fn of_tiles(graph: &[Vec<usize>], stages: usize, tiles: usize) -> Self {
-        Planner::new(graph, stages, tiles).plan()
+    /// A plan for so many tiles of nearly equal weight; for one a block where there are fewer blocks.
+    pub fn of_tiles(graph: &[Vec<usize>], weights: &[u64], stages: usize, tiles: usize) -> Self {
+        Planner::new(graph, stages, divide(weights, tiles)).plan()
     }
 
     /// The same tiles stage by stage: all blocks begin a stage in one phase, and finish it in the next one.
@@ -136,10 +138,16 @@ impl Plan {
         self.tiles.first().map_or(0, |tile| tile.phases.len())
     }
 
-    /// Events that follow each other.
-    fn longest(&self) -> usize {
-        let longest = |phase: usize| self.tiles.iter().map(|tile| tile.phases[phase].len()).max().unwrap_or(0);
-        (0..self.phases()).map(|phase| longest(phase) + MEETING).sum()
+    /// The weight of events that follow each other, all events of a block being equal; a meeting is as long as [`MEETING`] events of
+    /// the mean block.
+    fn longest(&self, weights: &[u64]) -> u128 {
+        let weight = |events: &[Event]| events.iter().map(|event| u128::from(weights[event.block as usize])).sum();
+        let longest = |phase: usize| -> u128 {
+            self.tiles.iter().map(|tile| weight(&tile.events[tile.phases[phase].clone()])).max().unwrap_or(0)
+        };
+        let all: u128 = weights.iter().map(|weight| u128::from(*weight)).sum();
+        let meeting = MEETING * all / (weights.len() as u128).max(1);
+        (0..self.phases()).map(|phase| longest(phase) + meeting).sum()
     }
 }
 

@@ -1,6 +1,7 @@
 //! A plan under way.
 
 use super::{Event, Plan, Slot, Tile};
+use std::ops::Range;
 
 /// Slots that are free; the one that was used last is taken first, while it is in the cache.
 #[derive(Default)]
@@ -44,24 +45,28 @@ pub struct Planner<'a> {
 }
 
 impl<'a> Planner<'a> {
-    /// For so many tiles of equal size.
-    pub fn new(graph: &'a [Vec<usize>], stages: usize, tiles: usize) -> Self {
+    /// For tiles of these blocks, which are all blocks one after the other.
+    pub fn new(graph: &'a [Vec<usize>], stages: usize, ranges: Vec<Range<usize>>) -> Self {
         let count = graph.len();
-        let size = count.div_ceil(tiles).max(1);
-        let tile_of = |first: usize| {
-            let range = first..count.min(first + size);
-            Tile { events: vec![], phases: vec![], rates: 0, traces: 0, range, falls: first / size % 2 == 1 }
+        let mut tile = vec![0; count];
+        ranges.iter().enumerate().for_each(|(number, range)| tile[range.clone()].fill(number));
+        let tile_of = |(number, range): (usize, Range<usize>)| Tile {
+            events: vec![],
+            phases: vec![],
+            rates: 0,
+            traces: 0,
+            range,
+            falls: number % 2 == 1,
         };
-        let tiles: Vec<Tile> = (0..count).step_by(size).map(tile_of).collect();
+        let tiles: Vec<Tile> = ranges.into_iter().enumerate().map(tile_of).collect();
         let slots = || tiles.iter().map(|_| Slots::default()).collect();
-        let shows = |(block, near): (usize, &Vec<usize>)| near.iter().any(|near| near / size != block / size);
+        let shows = |(block, near): (usize, &Vec<usize>)| near.iter().any(|&near| tile[near] != tile[block]);
         Self {
             graph,
             stages,
             begun: vec![0; count],
             seen: vec![0; count],
             finished: vec![0; count],
-            tile: (0..count).map(|block| block / size).collect(),
             shows: graph.iter().enumerate().map(shows).collect(),
             early: early(graph, stages, &tiles),
             readers: graph.iter().map(|near| near.len() as u32).collect::<Vec<_>>().repeat(stages),
@@ -70,6 +75,7 @@ impl<'a> Planner<'a> {
             rates: slots(),
             traces: slots(),
             shown: vec![],
+            tile,
             tiles,
         }
     }

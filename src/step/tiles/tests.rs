@@ -124,10 +124,17 @@ fn play(graph: &[Vec<usize>], stages: usize, plan: &Plan) -> Vec<Option<u64>> {
     next
 }
 
-/// Checks the plan for so many tiles, whether it is worth it or not.
-fn check(graph: &[Vec<usize>], stages: usize, tiles: usize) -> Plan {
-    let plan = Planner::new(graph, stages, tiles).plan();
-    assert!(plan.tiles.len() <= tiles && plan.phases() <= if tiles > 1 { graph.len() * stages } else { 1 });
+/// Blocks of one weight.
+fn equal(graph: &[Vec<usize>]) -> Vec<u64> {
+    vec![1000; graph.len()]
+}
+
+/// Checks the plan for so many tiles of blocks of these weights, whether it is worth it or not.
+fn check(graph: &[Vec<usize>], weights: &[u64], stages: usize, tiles: usize) -> Plan {
+    let plan = Plan::of_tiles(graph, weights, stages, tiles);
+    assert!(
+        plan.tiles.len() == tiles.min(graph.len()) && plan.phases() <= if tiles > 1 { graph.len() * stages } else { 1 }
+    );
     assert_eq!(play(graph, stages, &plan), stage_by_stage(graph, stages));
     let events: usize = plan.tiles.iter().map(|tile| tile.events.len()).sum();
     assert_eq!(events, 2 * stages * graph.len(), "something is done twice");
@@ -138,30 +145,52 @@ fn check(graph: &[Vec<usize>], stages: usize, tiles: usize) -> Plan {
     plan
 }
 
+/// Weights of so many blocks, most of them alike and some a thousand times as heavy as others.
+fn any_weights(blocks: usize) -> impl Strategy<Value = Vec<u64>> {
+    let weight = prop_oneof![4 => Just(700), 2 => 1u64..5000, 1 => 10_000u64..1_000_000];
+    prop::collection::vec(weight, blocks)
+}
+
 proptest! {
     #[test]
     fn every_plan_of_a_row_gives_what_all_blocks_give_stage_by_stage(
         n in 1usize..80, reach in 1usize..5, ring: bool, stages in 1usize..6, tiles in 1usize..6) {
-        check(&row(n, reach, ring), stages, tiles);
+        let graph = row(n, reach, ring);
+        check(&graph, &equal(&graph), stages, tiles);
     }
 
     #[test]
     fn every_plan_of_a_sheet_gives_what_all_blocks_give_stage_by_stage(
         rows in 1usize..60, width in 1usize..5, ring: bool, stages in 1usize..6, tiles in 1usize..6) {
-        check(&sheet(rows, width, ring), stages, tiles);
+        let graph = sheet(rows, width, ring);
+        check(&graph, &equal(&graph), stages, tiles);
     }
 
     #[test]
     fn every_plan_of_any_graph_gives_what_all_blocks_give_stage_by_stage(
         n in 1usize..200, reach in 1usize..3, ring: bool, stages in 1usize..4, tiles in 1usize..6,
-        links in prop::collection::vec((0usize..200, 0usize..200), 0..6)) {
-        check(&tangled(n, reach, ring, &links), stages, tiles);
+        links in prop::collection::vec((0usize..200, 0usize..200), 0..6), weights in any_weights(200)) {
+        check(&tangled(n, reach, ring, &links), &weights[..n], stages, tiles);
+    }
+
+    #[test]
+    fn tiles_are_all_blocks_in_their_order_and_none_is_heavier_than_the_mean_and_the_heaviest_block(
+        weights in (0usize..300).prop_flat_map(any_weights), tiles in 1usize..40) {
+        let runs = divide(&weights, tiles);
+        prop_assert_eq!(runs.len(), tiles.min(weights.len()));
+        let all: Vec<usize> = runs.iter().flat_map(Clone::clone).collect();
+        prop_assert_eq!(all, (0..weights.len()).collect::<Vec<_>>());
+        prop_assert!(runs.iter().all(|run| !run.is_empty()));
+        let sum = |run: &Range<usize>| weights[run.clone()].iter().sum::<u64>();
+        let (most, count) = (runs.iter().map(sum).max().unwrap_or(0), runs.len() as u64);
+        let heaviest = weights.iter().max().copied().unwrap_or(0);
+        prop_assert!(count * most <= sum(&(0..weights.len())) + count * heaviest, "{:?}", runs);
     }
 }
 
 #[test]
 fn slots_are_as_few_as_the_blocks_under_way() {
-    let plan = Plan::new(&row(1000, 4, false), 4, 1);
+    let plan = Plan::new(&row(1000, 4, false), &[1000; 1000], 4, 1);
     let [tile] = &plan.tiles[..] else { panic!("one thread has one tile") };
     // A stage follows the one before it by the reach of 4, and a trace is read by blocks up to 4 behind and before.
     assert!(tile.rates <= 4 * 5 + 4 && tile.traces <= 4 * 10, "{} {}", tile.rates, tile.traces);
@@ -174,7 +203,7 @@ fn tiles_meet_once_for_each_stage_at_both_ends_and_show_a_layer_each_time() {
     for tiles in [2, 3, 4] {
         for ring in [false, true] {
             let (graph, stages) = (sheet(25 * tiles, 4, ring), 5);
-            let plan = check(&graph, stages, tiles);
+            let plan = check(&graph, &equal(&graph), stages, tiles);
             // Where two tiles begin, and where two end: not of a chain of two.
             let rounds = if ring || tiles > 2 { 2 } else { 1 };
             assert_eq!([plan.tiles.len(), plan.phases()], [tiles, rounds * (stages + 1)]);
@@ -190,10 +219,29 @@ fn tiles_meet_once_for_each_stage_at_both_ends_and_show_a_layer_each_time() {
 
 #[test]
 fn so_many_tiles_as_are_worth_it() {
-    let count = |graph: &[Vec<usize>], threads| Plan::new(graph, 3, threads).tiles.len();
+    let count = |graph: &[Vec<usize>], threads| Plan::new(graph, &equal(graph), 3, threads).tiles.len();
     assert_eq!(count(&sheet(50, 10, true), 1), 1);
     assert_eq!(count(&sheet(50, 10, true), 2), 2);
     assert_eq!(count(&sheet(50, 10, true), 3), 3);
     // Too little for two to be quicker: they would meet more than they do.
     assert_eq!(count(&row(6, 1, false), 2), 1);
+}
+
+#[test]
+fn blocks_of_equal_weight_are_divided_to_one_block() {
+    for (blocks, tiles) in [(1000, 3), (9, 4), (5, 3), (7, 7), (100, 16)] {
+        let sizes: Vec<usize> = divide(&vec![640; blocks], tiles).iter().map(|run| run.len()).collect();
+        assert!(sizes.iter().all(|size| [blocks / tiles, blocks.div_ceil(tiles)].contains(size)), "{sizes:?}");
+    }
+}
+
+#[test]
+fn a_tile_of_heavy_blocks_has_fewer_of_them() {
+    // Half of the blocks are four times as heavy: of two tiles the second has 5/8 of these.
+    let weights: Vec<u64> = (0..160).map(|block| if block < 80 { 500 } else { 2000 }).collect();
+    assert_eq!(divide(&weights, 2), [0..110, 110..160]);
+    // A block that is heavier than all others together has a tile of its own, and no tile is empty.
+    assert_eq!(divide(&[1, 1, 100_000, 1, 1], 3), [0..2, 2..3, 3..5]);
+    assert_eq!(divide(&[100_000, 1, 1], 3), [0..1, 1..2, 2..3]);
+    assert!(divide(&[], 3).is_empty());
 }
