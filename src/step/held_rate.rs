@@ -95,25 +95,28 @@ impl Block<'_> {
     pub(super) fn held_rate(&self, state: &State, rate: &mut [F8]) {
         let (line, metric, u) = (&self.scheme.operators.line, self.metric(), self.unknowns(state));
         let creep = self.scheme.creep_of(state, self.number);
-        let moduli = &[0, 1, 2, 3].map(|face| self.held_modulus(face));
+        let own = self.spring_between(self.material());
+        let moduli = &[0, 1, 2, 3].map(|face| self.held_modulus(face, own));
         let pulls = &mut [[[F8::ZERO; AXES]; MOST_FACE_POINTS]; FACES];
         self.pull_along_walls(creep, pulls);
         with_nodes!(line.m, M => self.scheme.kernel.run(HeldRate::<'_, M> { line, metric, u, creep, moduli, pulls, rate }));
     }
 
-    /// What a cell takes of l k of a face, Pa: half of it between two cells, all of it at a side that gives back all; walls are in
-    /// [`Block::pull_along_walls`].
-    fn held_modulus(&self, face: usize) -> F8 {
-        let (scheme, law) = (self.scheme, self.material());
-        let of = |neighbour: &Neighbour| match neighbour {
-            Neighbour::Cell(_) => 0.5 * self.spring_between(law),
-            Neighbour::Interface(_, there) => 0.5 * self.spring_between(*there),
-            Neighbour::Boundary(group) if scheme.boundaries[*group].gives_back() == GivesBack::All => {
-                scheme.spring_at(*group, law)
-            }
-            Neighbour::Boundary(_) | Neighbour::Padding => 0.0,
-        };
-        F8(std::array::from_fn(|lane| of(&scheme.operators.blocks.neighbours[self.number][face][lane])))
+    /// What a cell takes of l k of a face, Pa: half of `own` between two cells of one law, all of it at a side that gives back all; walls are
+    /// in [`Block::pull_along_walls`].
+    fn held_modulus(&self, face: usize, own: f64) -> F8 {
+        let (scheme, law, mut out) = (self.scheme, self.material(), F8::ZERO);
+        for (lane, neighbour) in scheme.operators.blocks.neighbours[self.number][face].iter().enumerate() {
+            out.0[lane] = match neighbour {
+                Neighbour::Cell(_) => 0.5 * own,
+                Neighbour::Interface(_, there) => 0.5 * self.spring_between(*there),
+                Neighbour::Boundary(group) if scheme.boundaries[*group].gives_back() == GivesBack::All => {
+                    scheme.spring_at(*group, law)
+                }
+                Neighbour::Boundary(_) | Neighbour::Padding => 0.0,
+            };
+        }
+        out
     }
 
     /// The faces that give back along themselves alone, with half of a spring.
