@@ -127,6 +127,10 @@ fn springs_that_give_back_the_creep_of_faces_make_no_energy() {
             println!("{name} S{degree}: {found:?}");
             assert!(found.energy < 4e-9 && found.definite && found.growth < 1e-9, "{name} S{degree}: {found:?}");
         }
+        // A step of the default length: the predictor knows what springs hold two cells away.
+        let step = measure(&patch(&sets), ASKED).unwrap();
+        println!("step S{degree}: {step:?}");
+        assert!(step.growth < 1e-9, "S{degree}: {step:?}");
     }
 }
 

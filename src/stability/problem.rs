@@ -180,10 +180,11 @@ impl Setup {
                     Pattern::Checkerboard => [2, 2],
                     Pattern::Halves => [2, 1],
                 };
-                // What a cell does in a step reaches as many cells as it has stages.
+                // What a cell does in a step reaches as many cells as it has stages; what the face of a cell has crept is known to the
+                // predictor of the cell beyond it, and so reaches the neighbours of that one.
                 let reach = match scene.integration() {
                     Method::RungeKutta(tableau) => tableau.stages(),
-                    Method::Ader { .. } => 1,
+                    Method::Ader { .. } => 1 + usize::from(scene.scheme.springs),
                 };
                 let units = 1 + 2 * reach.div_ceil(unit[0].min(unit[1]));
                 (unit.map(|n| n * units), Some(unit), units)
