@@ -30,7 +30,7 @@ impl Bench {
     /// Writes `mixed.toml`, a scene of a body in a hundred blocks. Those of its left half flow, those of its right half have 25 points a cell
     /// and matrices of their own.
     pub fn of_mixed_body(&self) {
-        Parts::default().halves([2.0, 1.0], [20, 20], ["left", "right"], "out").write(&self.path("."));
+        Parts::default().halves([2.0, 1.0], [20, 40], ["left", "right"], "out").write(&self.path("."));
         let steel = "young = 2e11, poisson = 0.3, density = 7800";
         let text = format!(
             "title = \"mixed\"\nmesh.file = \"mesh.msh\"\nboundary = [{{ group = \"out\", kind = \"free\" }}]\nmaterial = [\n\
