@@ -164,7 +164,7 @@ impl Folder {
     /// # Errors
     /// A folder that cannot be made, a result that cannot be removed.
     pub fn clear_results(&self) -> Result<Vec<PathBuf>, Error> {
-        for name in self.results() {
+        for name in self.results_from_the_summary_on() {
             let path = self.root.join(name);
             std::fs::remove_file(&path).map_err(|why| Error::output(&path, why))?;
         }
@@ -185,6 +185,13 @@ impl Folder {
         Ok(self.files().into_iter().filter(is_left).map(|name| self.root.join(name)).collect())
     }
 
+    /// The results in the order in which they are removed: where that is interrupted, no summary says of what is left that it is done.
+    fn results_from_the_summary_on(&self) -> Vec<String> {
+        let mut results = self.results();
+        results.sort_by_key(|name| name != SUMMARY);
+        results
+    }
+
     /// Removes what a killed run has left of files that it was writing.
     pub fn remove_parts(&self) {
         for name in self.files() {
@@ -200,7 +207,7 @@ impl Folder {
     /// A file that cannot be removed.
     pub fn cut_back(&self, step: usize, with_snapshot: bool) -> Result<(), Error> {
         self.remove_parts();
-        for name in self.results() {
+        for name in self.results_from_the_summary_on() {
             // A grid at the step is the one that the run goes on with.
             let first = if name.starts_with("snapshots/") && !with_snapshot { step } else { step + 1 };
             if step_of(&name).is_some_and(|of| of >= first) || name == SUMMARY {

@@ -115,6 +115,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         // One metric for all points turns P to the axes of the cell before it is differentiated: fewer products.
         let constant = (self.metric.len() == DEFORMATION).then(|| load_array::<L, DEFORMATION>(self.metric));
         let mut row = Row::default();
+        self.begin_shift(arrays);
         for sweep in &self.sweeps.inner {
             self.renew(sweep, arrays);
             for s in 0..sweep.to {
@@ -179,25 +180,35 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
     }
 
-    /// U^n + dt sum_k B[k] (rho0 b_k + dp/dt of the springs), where there are sources or springs.
+    /// U^n, to which sources and springs add, where there are any. They add to p alone.
+    #[inline(always)]
+    fn begin_shift(&self, arrays: &mut Arrays) {
+        if !arrays.shifted.is_empty() {
+            let count = UNKNOWNS * self.matrices.points();
+            arrays.shifted[..count].copy_from_slice(&arrays.start[..count]);
+        }
+    }
+
+    /// p^n + dt sum_k B[k] (rho0 b_k + dp/dt of the springs), where there are sources or springs.
     #[inline(always)]
     fn shift<L: Lanes>(&self, arrays: &mut Arrays, row: &[f64]) {
         if arrays.shifted.is_empty() {
             return;
         }
         let np = self.matrices.points();
-        arrays.shifted[..UNKNOWNS * np].copy_from_slice(&arrays.start[..UNKNOWNS * np]);
-        if !arrays.held.is_empty() {
-            let mut sum = 0.0;
-            for entry in row {
-                sum += entry;
-            }
-            let factor = L::splat(self.dt * sum);
-            let held = arrays.held.as_chunks::<UNKNOWNS>().0;
-            for (held, u) in held.iter().zip(arrays.shifted.as_chunks_mut::<UNKNOWNS>().0).take(np) {
-                for k in DEFORMATION..UNKNOWNS {
-                    factor.mul_add(L::load(&held[k]), L::load(&u[k])).store(&mut u[k]);
+        let mut sum = 0.0;
+        for entry in row {
+            sum += entry;
+        }
+        let factor = L::splat(self.dt * sum);
+        let (start, shifted) = (arrays.start.as_chunks::<UNKNOWNS>().0, arrays.shifted.as_chunks_mut::<UNKNOWNS>().0);
+        for p in 0..np {
+            for k in DEFORMATION..UNKNOWNS {
+                let mut u = L::load(&start[p][k]);
+                if !arrays.held.is_empty() {
+                    u = factor.mul_add(L::load(&arrays.held[UNKNOWNS * p + k]), u);
                 }
+                u.store(&mut shifted[p][k]);
             }
         }
         if arrays.source.is_empty() {
