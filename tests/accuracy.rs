@@ -156,7 +156,7 @@ fn spin_and_strain(mesh: &Mesh, snapshot: &Snapshot) -> [f64; 2] {
     let (m, nodes) = (points.len(), points.len() * points.len());
     let (mut spin, mut strain) = (0.0, 0.0_f64);
     for cell in 0..mesh.cells.len() {
-        let corners = mesh.corners(cell);
+        let map = mesh.map(cell);
         for a in 0..nodes {
             let xi = [points[a / m], points[a % m]];
             let weight = weights[a / m] * weights[a % m] * map::determinant(&map::jacobian(&corners, xi));

@@ -100,9 +100,9 @@ impl Wave {
         let components = scheme.flux.components();
         let mut cells = vec![0.0; mesh.cells.len() * components * n];
         for (cell, values) in cells.chunks_mut(components * n).enumerate() {
-            let corners = mesh.corners(cell);
+            let map = mesh.map(cell);
             for a in 0..n {
-                let (f, v) = self.at(map::position(&corners, basis.node_2d(a)), 0.0);
+                let (f, v) = self.at(map::position(&map, basis.node_2d(a)), 0.0);
                 let u = [f[0], f[1], f[2], f[3], density * v[0], density * v[1]];
                 u.into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
             }

@@ -49,13 +49,13 @@ impl Pattern {
 /// The spacing of a square lattice with k^2 points in the mean of some cells, m.
 pub fn mean_spacing(mesh: &Mesh, member: &[bool], k: usize) -> f64 {
     let cells = || (0..mesh.cells.len()).filter(|&cell| member[cell]);
-    let area: f64 = cells().map(|cell| map::area(&mesh.corners(cell))).sum();
+    let area: f64 = cells().map(|cell| map::area(&mesh.map(cell))).sum();
     (area / cells().count().max(1) as f64).sqrt() / k as f64
 }
 
 fn rotated(mesh: &Mesh, member: &[bool], angle: f64, spacing: f64) -> Cloud {
     let (sine, cosine) = angle.to_radians().sin_cos();
-    let corners = || (0..mesh.cells.len()).filter(|&cell| member[cell]).flat_map(|cell| mesh.corners(cell));
+    let corners = || (0..mesh.cells.len()).filter(|&cell| member[cell]).flat_map(|cell| map::hull(&mesh.map(cell)));
     let [low, high] =
         [f64::min, f64::max].map(|pick| corners().reduce(|a, b| [0, 1].map(|i| pick(a[i], b[i]))).unwrap_or_default());
     let middle = [0, 1].map(|i| 0.5 * (low[i] + high[i]));
@@ -91,7 +91,7 @@ fn poisson_disk(mesh: &Mesh, member: &[bool], seed: u64, spacing: f64) -> Cloud 
     let mut taken: HashMap<[i64; 2], [f64; 2]> = HashMap::new();
     let mut accepted: Vec<Candidate> = Vec::new();
     for candidate in candidates {
-        let x = map::position(&mesh.corners(candidate.cell), candidate.xi);
+        let x = map::position(&mesh.map(candidate.cell), candidate.xi);
         let [i, j] = square(x);
         // Its own square first: for most candidates a point is already there.
         let shifts = [0, -1, 1, -2, 2];
@@ -107,11 +107,16 @@ fn poisson_disk(mesh: &Mesh, member: &[bool], seed: u64, spacing: f64) -> Cloud 
 
 /// Candidates of a cell, even over its area.
 fn candidates(mesh: &Mesh, cell: usize, seed: u64, spacing: f64) -> impl Iterator<Item = Candidate> {
-    let corners = mesh.corners(cell);
-    let density = |xi| map::determinant(&map::jacobian(&corners, xi));
-    // J is linear along both parent directions: largest at a corner.
-    let densest = map::CORNER_XI.into_iter().map(density).fold(0.0, f64::max);
-    let count = (CANDIDATES * map::area(&corners) * (Pattern::DISK / spacing).powi(2)).ceil() as usize;
+    let map = mesh.map(cell);
+    let density = |xi| map::determinant(&map::jacobian(&map, xi));
+    // J is linear along both parent directions of a straight cell: largest at a corner.
+    let mut densest = map::CORNER_XI.into_iter().map(density).fold(0.0, f64::max);
+    if map.bulge.is_some() {
+        let samples = (0..9).flat_map(|i| (0..9).map(move |j| [i, j].map(|k| f64::from(k) / 8.0)));
+        // Of degree 3: between the samples it is larger by some percent.
+        densest = 1.1 * samples.map(density).fold(densest, f64::max);
+    }
+    let count = (CANDIDATES * map::area(&map) * (Pattern::DISK / spacing).powi(2)).ceil() as usize;
     let mut random = stream(seed, cell);
     let mut draw = move || loop {
         let xi = [0; 2].map(|_| uniform(&mut random));
@@ -128,7 +133,7 @@ mod tests {
     use crate::mesh::rectangle;
 
     fn positions(mesh: &Mesh, cloud: &Cloud) -> Vec<[f64; 2]> {
-        let of = |cell: usize| cloud.of(cell).iter().map(move |&xi| map::position(&mesh.corners(cell), xi));
+        let of = |cell: usize| cloud.of(cell).iter().map(move |&xi| map::position(&mesh.map(cell), xi));
         (0..mesh.cells.len()).flat_map(of).collect()
     }
 

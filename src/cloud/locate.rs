@@ -5,7 +5,8 @@ use rayon::prelude::*;
 
 use super::Cloud;
 use super::walk::Walk;
-use crate::mesh::{Mesh, map};
+use crate::mesh::Mesh;
+use crate::mesh::map::{self, Bulge, CellMap};
 
 /// Points that are this far outside a cell, in parent coordinates, still belong to it. Corners and edges are computed
 /// to a few 1e-16, and a point on the outer boundary must not be lost.
@@ -73,15 +74,17 @@ struct Entry {
 }
 
 impl Entry {
-    fn new(corners: map::Corners, cell: usize) -> Self {
+    fn new(mesh: &Mesh, cell: usize) -> Self {
+        let map = mesh.map(cell);
+        let corners = map.corners;
         let far = corners.iter().flatten().fold(0.0, |far: f64, x| far.max(x.abs()));
         // Far from the origin coordinates are rounded by eps |x|. In parent coordinates this is eps |x| / h.
-        let tolerance = TOLERANCE.max(16.0 * f64::EPSILON * far / map::h_e(&corners));
+        let tolerance = TOLERANCE.max(16.0 * f64::EPSILON * far / map::h_e(&map));
         Self { corners, cell, tolerance }
     }
 
-    fn extent(&self) -> Extent {
-        let tight = self.corners.iter().fold(Extent::EMPTY, |extent, &x| extent.join(x, x));
+    fn extent(&self, bulges: &[Bulge]) -> Extent {
+        let tight = map::hull(&self.map(bulges)).fold(Extent::EMPTY, |extent, x| extent.join(x, x));
         let margin = [0, 1].map(|i| 2.0 * self.tolerance * (tight.high[i] - tight.low[i]));
         Extent {
             low: [tight.low[0] - margin[0], tight.low[1] - margin[1]],
@@ -89,12 +92,22 @@ impl Entry {
         }
     }
 
+    /// The map of the cell.
+    fn map(&self, bulges: &[Bulge]) -> CellMap {
+        CellMap { corners: self.corners, bulge: bulge(bulges, self.cell) }
+    }
+
     /// Parent coordinates of a point that belongs to the closed cell.
-    fn holds(&self, x: [f64; 2]) -> Option<[f64; 2]> {
+    fn holds(&self, x: [f64; 2], bulges: &[Bulge]) -> Option<[f64; 2]> {
         let inside = |xi: &f64| (-self.tolerance..=1.0 + self.tolerance).contains(xi);
-        let xi = map::parent(&self.corners, x)?;
+        let xi = map::parent(&self.map(bulges), x)?;
         xi.iter().all(inside).then(|| xi.map(|xi| xi.clamp(0.0, 1.0)))
     }
+}
+
+/// How a cell is curved; none where it is straight.
+pub(super) fn bulge(bulges: &[Bulge], cell: usize) -> Option<Bulge> {
+    bulges.get(cell).filter(|bulge| **bulge != Bulge::default()).copied()
 }
 
 /// A node of the hierarchy. Its left child follows it in the list.
@@ -111,22 +124,24 @@ pub struct Locator {
     /// A balanced binary tree in depth-first order. Each node covers a run of entries; each of its two children covers
     /// half of it.
     nodes: Vec<Node>,
+    /// [`Mesh::bulges`]: empty where all cells are straight.
+    bulges: Vec<Bulge>,
     walk: Walk,
 }
 
 impl Locator {
     /// A locator of a mesh with convex cells ([`Mesh::checked`]).
     pub fn new(mesh: &Mesh) -> Self {
-        let mut entries: Vec<_> = (0..mesh.cells.len()).map(|cell| Entry::new(mesh.corners(cell), cell)).collect();
+        let mut entries: Vec<_> = (0..mesh.cells.len()).map(|cell| Entry::new(mesh, cell)).collect();
         let walk = Walk::new(mesh, |cell| entries[cell].tolerance);
         let mut nodes = Vec::new();
-        build(&mut entries, &mut nodes);
-        Self { entries, nodes, walk }
+        build(&mut entries, &mut nodes, &mesh.bulges);
+        Self { entries, nodes, bulges: mesh.bulges.clone(), walk }
     }
 
     /// As [`Locator::find`], but faster if the given cell is near the point. The result is the same to the bit.
     pub fn find_from(&self, near: usize, x: [f64; 2]) -> Option<(usize, [f64; 2])> {
-        self.walk.find(near, x).or_else(|| self.find(x))
+        self.walk.find(near, x, &self.bulges).or_else(|| self.find(x))
     }
 
     /// The cell of a point and its parent coordinates in [0, 1]^2, or `None` outside of the mesh.
@@ -150,7 +165,7 @@ impl Locator {
             if b - a <= LEAF {
                 for entry in &self.entries[a..b] {
                     if best.is_none_or(|(cell, _)| entry.cell < cell) {
-                        best = entry.holds(x).map(|xi| (entry.cell, xi)).or(best);
+                        best = entry.holds(x, &self.bulges).map(|xi| (entry.cell, xi)).or(best);
                     }
                 }
                 continue;
@@ -178,7 +193,7 @@ impl Locator {
                 continue;
             }
             if b - a <= LEAF {
-                let meets = self.entries[a..b].iter().filter(|entry| entry.extent().meets(low, high));
+                let meets = self.entries[a..b].iter().filter(|entry| entry.extent(&self.bulges).meets(low, high));
                 out.extend(meets.map(|entry| entry.cell));
                 continue;
             }
@@ -190,9 +205,9 @@ impl Locator {
     }
 }
 
-fn build(entries: &mut [Entry], nodes: &mut Vec<Node>) {
+fn build(entries: &mut [Entry], nodes: &mut Vec<Node>, bulges: &[Bulge]) {
     let join = |extent: Extent, entry: &Entry| {
-        let own = entry.extent();
+        let own = entry.extent(bulges);
         extent.join(own.low, own.high)
     };
     let extent = entries.iter().fold(Extent::EMPTY, join);
@@ -204,9 +219,9 @@ fn build(entries: &mut [Entry], nodes: &mut Vec<Node>) {
         let middle = entries.len() / 2;
         entries.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cell.cmp(&b.cell)));
         let (left, right) = entries.split_at_mut(middle);
-        build(left, nodes);
+        build(left, nodes, bulges);
         nodes[node].right = nodes.len();
-        build(right, nodes);
+        build(right, nodes, bulges);
     }
 }
 

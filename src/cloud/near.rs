@@ -12,9 +12,9 @@ pub type Tree = RTree<GeomWithData<[f64; 2], usize>>;
 pub fn trees(mesh: &Mesh, cloud: &Cloud, group: &[usize], asked: &[bool]) -> Vec<Option<Tree>> {
     let mut points = vec![vec![]; asked.len()];
     for cell in (0..mesh.cells.len()).filter(|&cell| asked[group[cell]]) {
-        let corners = mesh.corners(cell);
+        let map = mesh.map(cell);
         let numbered = cloud.of(cell).iter().zip(cloud.first[cell]..);
-        points[group[cell]].extend(numbered.map(|(&xi, p)| GeomWithData::new(map::position(&corners, xi), p)));
+        points[group[cell]].extend(numbered.map(|(&xi, p)| GeomWithData::new(map::position(&map, xi), p)));
     }
     points.into_iter().zip(asked).map(|(points, asked)| asked.then(|| RTree::bulk_load(points))).collect()
 }

@@ -1,6 +1,8 @@
 //! A walk from cell to cell across faces towards a point. It is fast if the point is near the one before.
 
-use crate::mesh::{Mesh, faces, map};
+use super::locate::bulge;
+use crate::mesh::map::{self, Bulge, CellMap};
+use crate::mesh::{Mesh, faces};
 
 /// The walk gives up after so many cells. Two points that follow each other are usually few cells apart, and the
 /// hierarchy takes as long as a walk over some ten cells that are not in the cache.
@@ -48,7 +50,7 @@ impl Walk {
 
     /// The cell that has the point well inside, found from a cell nearby. `None` if the way leaves the body, is long,
     /// or ends near a face.
-    pub(super) fn find(&self, from: usize, x: [f64; 2]) -> Option<(usize, [f64; 2])> {
+    pub(super) fn find(&self, from: usize, x: [f64; 2], bulges: &[Bulge]) -> Option<(usize, [f64; 2])> {
         let mut cell = from;
         for _ in 0..STEPS {
             let stop = self.stops.get(cell)?;
@@ -62,7 +64,13 @@ impl Walk {
                 }
             }
             match worst {
-                w if w > stop.margin && w.is_finite() => return Some((cell, map::parent(&stop.corners, x)?)),
+                w if w > stop.margin && w.is_finite() => {
+                    let map = CellMap { corners: stop.corners, bulge: bulge(bulges, cell) };
+                    let xi = map::parent(&map, x)?;
+                    // Between its corners a point may still lie beyond a curved edge.
+                    let inside = xi.iter().all(|xi| (MARGIN..=1.0 - MARGIN).contains(xi));
+                    return (map.bulge.is_none() || inside).then_some((cell, xi));
+                }
                 w if w < -stop.margin => cell = stop.next[out],
                 _ => return None,
             }

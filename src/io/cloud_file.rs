@@ -44,7 +44,7 @@ pub fn write_with(path: &Path, cloud: &Cloud, mesh: &Mesh, more: &Extras) -> Res
         return Err(Error::output(path, what));
     }
     let positions: Vec<[f64; 2]> = (0..mesh.cells.len())
-        .flat_map(|c| cloud.of(c).iter().map(move |&xi| map::position(&mesh.corners(c), xi)))
+        .flat_map(|c| cloud.of(c).iter().map(move |&xi| map::position(&mesh.map(c), xi)))
         .collect();
     let mut arrays = vec![
         ("first", vec![cloud.first.len()], ArrayRef::Index(&cloud.first)),

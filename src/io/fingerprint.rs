@@ -3,7 +3,7 @@
 use super::hash::Digest;
 use crate::cloud::Cloud;
 use crate::mesh::Mesh;
-use crate::mesh::map::Corners;
+use crate::mesh::map::CellMap;
 use crate::step::{Law, Scheme};
 
 /// The attributes of a fingerprint.
@@ -31,21 +31,24 @@ impl Fingerprint {
     pub fn of(scheme: &Scheme) -> Self {
         let (blocks, geometry) = (&scheme.operators.blocks, &scheme.operators.geometry);
         let cells = blocks.slot.iter();
-        let cells = cells.map(|&(block, lane)| (blocks.material[block], geometry.corners_of(block, lane)));
+        let cells = cells.map(|&(block, lane)| (blocks.material[block], geometry.map_of(block, lane)));
         Self::of_parts(cells, &scheme.laws, points(&scheme.operators.line.nodes(), &scheme.places()))
     }
 
     /// That of a scheme which would be made of a mesh with the law of each cell, of laws, and of the places where these are evaluated;
     /// `nodes` are the Gauss nodes of a cell.
     pub fn of_body(mesh: &Mesh, material: &[usize], laws: &[Law], nodes: &[[f64; 2]], places: &Cloud) -> Self {
-        let cells = material.iter().enumerate().map(|(cell, &law)| (law, mesh.corners(cell)));
+        let cells = material.iter().enumerate().map(|(cell, &law)| (law, mesh.map(cell)));
         Self::of_parts(cells, laws, points(nodes, places))
     }
 
-    fn of_parts(cells: impl Iterator<Item = (usize, Corners)>, laws: &[Law], points: String) -> Self {
+    fn of_parts(cells: impl Iterator<Item = (usize, CellMap)>, laws: &[Law], points: String) -> Self {
         let mut mesh = Digest::new();
-        for (law, corners) in cells {
+        for (law, CellMap { corners, bulge }) in cells {
             mesh.count(law).reals(corners.as_flattened().iter().copied());
+            if let Some(bulge) = bulge {
+                mesh.reals(bulge.as_flattened().iter().copied());
+            }
         }
         let mut all = Digest::new();
         laws.iter().for_each(|law| of_law(law, &mut all));

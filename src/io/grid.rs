@@ -1,7 +1,8 @@
 //! The output model, independent of the solver: fields on a grid of high-order quadrilaterals, and on points.
 
 use crate::error::{Error, Result};
-use crate::mesh::{Mesh, map};
+use crate::mesh::Mesh;
+use crate::mesh::map::{self, Bulge};
 
 /// How many components a field has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,13 +73,16 @@ pub struct Groups {
     pub edges: Vec<String>,
     /// Cell, local face, group.
     pub tagged: Vec<[usize; 3]>,
+    /// How the edges of the cells are curved, as in the mesh; empty where all are straight.
+    pub bulges: Vec<Bulge>,
 }
 
 impl Groups {
     /// Those of a mesh.
     pub fn of(mesh: &Mesh) -> Self {
         let tagged = mesh.edges.iter().map(|edge| [edge.cell, edge.face, edge.group]).collect();
-        Self { cells: mesh.groups.clone(), edges: mesh.edge_groups.clone(), tagged }
+        let bulges = if mesh.curved_cells() > 0 { mesh.bulges.clone() } else { vec![] };
+        Self { cells: mesh.groups.clone(), edges: mesh.edge_groups.clone(), tagged, bulges }
     }
 }
 
@@ -97,9 +101,9 @@ impl HighOrderGrid {
     /// The cells of a mesh in their initial configuration, without fields.
     pub fn of_mesh(mesh: &Mesh, degree: usize) -> Self {
         let nodes = lagrange_quad_nodes(degree);
-        let points = mesh.cells.iter().flat_map(|cell| {
-            let corners = cell.map(|n| mesh.nodes[n]);
-            nodes.iter().map(move |&xi| map::position(&corners, xi)).map(|[x, y]| [x, y, 0.0])
+        let points = (0..mesh.cells.len()).flat_map(|cell| {
+            let map = mesh.map(cell);
+            nodes.iter().map(move |&xi| map::position(&map, xi)).map(|[x, y]| [x, y, 0.0])
         });
         Self { degree, points: points.collect(), ..Self::default() }
     }

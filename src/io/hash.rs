@@ -1,7 +1,7 @@
 //! Fingerprints of meshes and clouds: blake3 of the exact bits, as hexadecimal text.
 
 use crate::cloud::Cloud;
-use crate::mesh::{BoundaryEdge, Mesh};
+use crate::mesh::{BoundaryEdge, Mesh, map};
 
 /// Feeds counts, numbers and texts to blake3. Each list comes with its length, so that different contents never give
 /// the same bytes.
@@ -62,7 +62,7 @@ impl Digest {
     }
 }
 
-/// The fingerprint of a mesh: nodes, cells, groups, edges, original numbers.
+/// The fingerprint of a mesh: nodes, cells, groups, edges, original numbers, and curved edges where there are any.
 pub fn of_mesh(mesh: &Mesh) -> String {
     let mut digest = Digest::new();
     digest.text("mesh").reals(mesh.nodes.as_flattened().iter().copied());
@@ -79,6 +79,9 @@ pub fn of_mesh(mesh: &Mesh) -> String {
         }
     }
     digest.counts(mesh.original.iter().copied());
+    if mesh.curved_cells() > 0 {
+        digest.text("bulges").reals(mesh.bulges.as_flattened().as_flattened().iter().copied());
+    }
     digest.finish()
 }
 
@@ -88,12 +91,18 @@ pub fn of_mesh(mesh: &Mesh) -> String {
 pub fn of_places(mesh: &Mesh) -> String {
     // -0.0 and 0.0 are one place; bits of numbers below 0 are sorted among themselves, which is an order too.
     let place = |node: usize| mesh.nodes[node].map(|x| (x + 0.0).to_bits());
-    let mut cells: Vec<([[u64; 2]; 4], &str)> = (0..mesh.cells.len())
+    let mut cells: Vec<([[u64; 2]; 4], Vec<[u64; 2]>, &str)> = (0..mesh.cells.len())
         .map(|cell| {
             let mut corners = mesh.cells[cell].map(place);
             let first = (0..4).min_by_key(|&k| corners[k]).unwrap_or(0);
             corners.rotate_left(first);
-            (corners, mesh.groups[mesh.cell_group[cell]].as_str())
+            // The middles of its edges in the order of the corners, and its own.
+            let map = mesh.map(cell);
+            let middles = map::middles(&map).map(|x| x.map(|x| (x + 0.0).to_bits()));
+            let mut curve = [2, 1, 3, 0, 4].map(|face| middles[face]);
+            curve[..4].rotate_left(first);
+            let curve = if map.bulge.is_some() { curve.to_vec() } else { vec![] };
+            (corners, curve, mesh.groups[mesh.cell_group[cell]].as_str())
         })
         .collect();
     let edge = |edge: &BoundaryEdge| {
@@ -108,8 +117,11 @@ pub fn of_places(mesh: &Mesh) -> String {
     edges.dedup();
     let mut digest = Digest::new();
     digest.text("places").count(cells.len());
-    for (corners, group) in cells {
+    for (corners, curve, group) in cells {
         digest.counts(corners.as_flattened().iter().copied()).text(group);
+        if !curve.is_empty() {
+            digest.counts(curve.as_flattened().iter().copied());
+        }
     }
     digest.count(edges.len());
     for (ends, group) in edges {

@@ -21,6 +21,7 @@ pub mod hdf5;
 mod import;
 mod load_table;
 pub mod mesh_file;
+mod middles;
 pub mod nodal;
 pub mod operators_file;
 pub mod own;

@@ -7,7 +7,7 @@ mod cells;
 mod decode;
 mod read;
 
-pub use cells::{EDGES, part};
+pub use cells::{CURVES, EDGES, part};
 pub use read::{at_nodes, points};
 
 use std::fmt::Write;
@@ -86,7 +86,8 @@ impl Piece {
         piece
     }
 
-    /// Names of groups as meshio has them in `field_data`, number and dimension, and the edges of groups ([`EDGES`]).
+    /// Names of groups as meshio has them in `field_data`, number and dimension, the edges of groups ([`EDGES`]), and how cells are
+    /// curved ([`CURVES`]).
     fn groups(&mut self, groups: &Groups) {
         self.0.push_str("<FieldData>");
         for (dimension, names) in [(1, &groups.edges), (2, &groups.cells)] {
@@ -96,6 +97,12 @@ impl Piece {
         }
         let edges: Vec<i64> = groups.tagged.as_flattened().iter().map(|&k| k as i64).collect();
         self.rows(EDGES, 3, &edges);
+        if !groups.bulges.is_empty() {
+            let values = groups.bulges.as_flattened().as_flattened();
+            let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().fold(f64::NAN, pick).to_string());
+            let size = [10, groups.bulges.len()];
+            self.array("Float64", CURVES, size, [&low, &high], bytes(values, |x| x.to_le_bytes()));
+        }
         self.0.push_str("</FieldData>");
     }
 

@@ -3,6 +3,7 @@
 use super::modes::{Legendre, Modes, of_lane};
 use super::neighbour::{Axes, around, behind};
 use super::waves::Waves;
+use crate::mesh::map;
 use crate::operators::Neighbour;
 use crate::state::UNKNOWNS;
 use crate::step::{Law, Made};
@@ -56,8 +57,9 @@ impl Cell<'_> {
 
     /// J grad xi of an axis in the middle, m.
     fn cofactor(&self, axis: usize) -> [f64; 2] {
-        let metric = self.made.scheme.operators.geometry.blocks[self.block].lane(self.lane);
-        if axis == 0 { metric.cofactor1(0.5) } else { metric.cofactor2(0.5) }
+        let map = self.made.scheme.operators.geometry.map_of(self.block, self.lane);
+        let j = map::jacobian(&map, [0.5; 2]);
+        if axis == 0 { [j[1][1], -j[0][1]] } else { [-j[1][0], j[0][0]] }
     }
 
     fn normal(&self, axis: usize) -> [f64; 2] {
@@ -93,11 +95,9 @@ impl Cell<'_> {
         let Neighbour::Boundary(group) = scheme.operators.blocks.neighbours[self.block][face][self.lane] else {
             return None;
         };
-        let geometry = &scheme.operators.geometry;
-        let (n, corners) =
-            (geometry.blocks[self.block].lane(self.lane).normal(face), geometry.corners_of(self.block, self.lane));
+        let map = scheme.operators.geometry.map_of(self.block, self.lane);
         let middle = [[0.0, 0.5], [1.0, 0.5], [0.5, 0.0], [0.5, 1.0]][face];
-        let x = crate::mesh::map::position(&corners, middle);
+        let (n, x) = (map::outward(&map, face, 0.5).0, map::position(&map, middle));
         let speed = scheme.boundaries[group].mirror(x, self.made.state.time)?;
         let mut axes = Axes::default();
         axes.reversed[face / 2] = true;

@@ -224,10 +224,11 @@ fn outside(made: &Made, (block, face): (usize, usize), own: &[F8], squares: &mut
         *square = 0.0;
         let Neighbour::Boundary(group) = neighbour else { continue };
         let middle = [[0.0, 0.5], [1.0, 0.5], [0.5, 0.0], [0.5, 1.0]][face];
-        let x = crate::mesh::map::position(&geometry.corners_of(block, lane), middle);
+        let x = crate::mesh::map::position(&geometry.map_of(block, lane), middle);
         let Some(speed) = made.scheme.boundaries[group].mirror(x, made.state.time) else { continue };
-        let (n, wall) = (geometry.blocks[block].lane(lane).normal(face), speed / speed_of(made, block));
+        let wall = speed / speed_of(made, block);
         for (point, weight) in operators.line.basis.weights.iter().enumerate() {
+            let (n, _) = geometry.of(block).at_face_of(lane, face, point);
             let v = [1, 2].map(|k| own[point * WATCHED + k].0[lane]);
             *square += weight * (2.0 * (v[0] * n[0] + v[1] * n[1] - wall)).powi(2);
         }
@@ -253,14 +254,14 @@ impl<const M: usize> Work for Traces<'_, M> {
     fn run<L: Lanes>(self) {
         let Self { made, block, out } = self;
         let (operators, u) = (&made.scheme.operators, &made.unknowns(block)[..UNKNOWNS * M * M]);
-        let (line, metric) = (&operators.line, operators.geometry.blocks[block].load::<L>());
+        let (line, metric) = (&operators.line, operators.geometry.of(block));
         let law = &made.scheme.laws[operators.blocks.material[block]];
         let scale = L::splat(1.0 / (law.density() * speed_of(made, block)));
         let (head, traces) = out.split_at_mut(TRACES);
         let (mut area, mut sums) = (L::zero(), [L::zero(); WATCHED]);
         for a in 0..M * M {
             let (i, j) = (a / M, a % M);
-            let (one, two) = (metric.cofactor1(line.basis.nodes[i]), metric.cofactor2(line.basis.nodes[j]));
+            let [one, two] = metric.at_node::<L>(line, i, j);
             let weight = L::splat(line.basis.weights[i] * line.basis.weights[j]);
             let mass = weight * crate::operators::determinant(one, two);
             area = area + mass;

@@ -52,7 +52,7 @@ fn state(mesh: &Mesh, scheme: &Scheme, u: impl Fn([f64; 2]) -> [f64; UNKNOWNS]) 
     let mut cells = vec![0.0; mesh.cells.len() * UNKNOWNS * n];
     for (cell, values) in cells.chunks_mut(UNKNOWNS * n).enumerate() {
         for a in 0..n {
-            let x = map::position(&mesh.corners(cell), scheme.operators.line.basis.node_2d(a));
+            let x = map::position(&mesh.map(cell), scheme.operators.line.basis.node_2d(a));
             u(x).into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
         }
     }
@@ -136,7 +136,7 @@ fn a_linear_state_stays_to_the_last_bit_whatever_corner_a_cell_begins_at() {
         for (after, _) in [moment, vertex] {
             let n = scheme.operators.nodes();
             for (cell, &(block, lane)) in scheme.operators.blocks.slot.iter().enumerate() {
-                let middle = map::position(&mesh.corners(cell), [0.5, 0.5]);
+                let middle = map::position(&mesh.map(cell), [0.5, 0.5]);
                 if inner(&middle) {
                     let of = |state: &State| -> Vec<f64> {
                         state.u[UNKNOWNS * n * block..][..UNKNOWNS * n].iter().map(|u| u.0[lane]).collect()

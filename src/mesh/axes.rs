@@ -45,6 +45,10 @@ impl Mesh {
         for (cell, &turns) in self.cells.iter_mut().zip(&turns) {
             cell.rotate_left(turns);
         }
+        for (bulge, &turns) in self.bulges.iter_mut().zip(&turns) {
+            let old = *bulge;
+            (0..4).for_each(|face| bulge[turned(face, turns)] = old[face]);
+        }
         for BoundaryEdge { cell, face, .. } in &mut self.edges {
             *face = turned(*face, turns[*cell]);
         }

@@ -19,9 +19,14 @@ impl Mesh {
             self.distinct(cell)?;
             if map::area(&self.corners(cell)) < 0.0 {
                 self.cells[cell].swap(1, 3);
+                if let Some(bulge) = self.bulges.get_mut(cell) {
+                    bulge.swap(0, 2);
+                    bulge.swap(1, 3);
+                }
                 *turned = true;
             }
             self.convex(cell)?;
+            self.unfolded(cell)?;
         }
         for edge in self.edges.iter_mut().filter(|edge| reversed[edge.cell]) {
             edge.face = REVERSED[edge.face];
@@ -36,7 +41,9 @@ impl Mesh {
     /// The first fault of its cells.
     pub fn check(&self) -> Result<(), Error> {
         self.consistent()?;
-        (0..self.cells.len()).try_for_each(|cell| self.distinct(cell).and_then(|()| self.convex(cell)))
+        (0..self.cells.len()).try_for_each(|cell| {
+            self.distinct(cell).and_then(|()| self.convex(cell)).and_then(|()| self.unfolded(cell))
+        })
     }
 
     /// Checks that all indices point into their lists, and that there are cells.
@@ -49,6 +56,9 @@ impl Mesh {
         if self.cell_group.len() != count || self.original.len() != count {
             let (groups, numbers) = (self.cell_group.len(), self.original.len());
             return refuse(format!("{count} cells, {groups} group indices, {numbers} cell numbers"));
+        }
+        if ![0, count].contains(&self.bulges.len()) {
+            return refuse(format!("{count} cells, {} of them with the curves of their edges", self.bulges.len()));
         }
         if let Some(cell) = (0..count).find(|&c| self.cells[c].iter().any(|&n| n >= self.nodes.len())) {
             return refuse(format!("cell {} names a node beyond the {} nodes", self.number(cell), self.nodes.len()));
@@ -73,6 +83,23 @@ impl Mesh {
         let repeated = |k: &usize| nodes[k + 1..].contains(&nodes[*k]) || corners[k + 1..].contains(&corners[*k]);
         match (0..4).find(repeated) {
             Some(k) => Err(Error::Repeated { cell: number, at: corners[k] }),
+            None => Ok(()),
+        }
+    }
+
+    /// An error of a curved cell whose map folds: det(dX/dxi), of degree 3 in each direction, is looked at in 9 x 9 points.
+    fn unfolded(&self, cell: usize) -> Result<(), Error> {
+        let map = self.map(cell);
+        let Some(bulge) = map.bulge else { return Ok(()) };
+        let number = self.number(cell);
+        if bulge.iter().flatten().any(|x| !x.is_finite()) {
+            return Err(Error::NotFinite { cell: number, at: map.corners[0] });
+        }
+        let samples = (0..9).flat_map(|i| (0..9).map(move |j| [i, j].map(|k| f64::from(k) / 8.0)));
+        let scaled = samples.map(|xi| (quality::scaled_jacobian(&map, xi), xi));
+        match scaled.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((scaled, _)) if scaled >= SMALLEST_SCALED_JACOBIAN => Ok(()),
+            Some((scaled, xi)) => Err(Error::Folded { cell: number, at: map::position(&map, xi), scaled }),
             None => Ok(()),
         }
     }

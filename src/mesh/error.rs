@@ -48,6 +48,16 @@ pub enum Error {
         /// All corners.
         corners: [[f64; 2]; 4],
     },
+    /// A curved cell whose edges cross, or whose map folds.
+    #[error("the edges of cell {cell} are curved so far that it folds at {}: its scaled Jacobian there is {scaled:.3e}", point(.at))]
+    Folded {
+        /// Number of the cell.
+        cell: u64,
+        /// The worst place.
+        at: [f64; 2],
+        /// det / (|a| |b|) of the tangents a, b there.
+        scaled: f64,
+    },
     /// A cell that a move of nodes would turn inside out.
     #[error("cell {cell} with a corner at {} would be turned inside out", point(.at))]
     Turned {
@@ -149,6 +159,9 @@ impl Error {
             Error::Repeated { .. } => "merge or remove the cell; collapsed quadrilaterals (triangles) cannot be used",
             Error::Inverted { .. } => {
                 "every corner must turn the same way with an angle between 0 and 180 degrees: smooth the mesh there, or mesh it finer"
+            }
+            Error::Folded { .. } => {
+                "move the middle nodes of its edges towards the middles of their chords, mesh it finer there, or save the mesh with first-order elements (in Gmsh `Mesh.ElementOrder = 1;`)"
             }
             Error::Turned { .. } => "move the nodes by less: by a small part of the smallest cell",
             Error::Crowded { .. } => "remove the cells that lie upon each other; a surface was perhaps meshed twice",

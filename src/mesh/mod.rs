@@ -16,10 +16,11 @@ mod summary;
 
 pub use error::Error;
 pub use faces::links;
+use map::{Bulge, CellMap};
 pub use periodic::periodic_links;
 pub use structured::rectangle;
 
-/// A mesh of bilinear quadrilaterals in the initial configuration, in metres.
+/// A mesh of quadrilaterals, bilinear or curved, in the initial configuration, in metres.
 ///
 /// Corner `k` of a cell has the parent coordinates (0,0), (1,0), (1,1), (0,1) for k = 0..4, and the
 /// corners run counter-clockwise. Local faces: 0 is xi1 = 0 (corners 0, 3), 1 is xi1 = 1 (corners 1, 2),
@@ -41,12 +42,26 @@ pub struct Mesh {
     pub edge_groups: Vec<String>,
     /// Number of each cell in the file that it came from (for messages and output).
     pub original: Vec<u64>,
+    /// How the edges of each cell are curved, [`map::Bulge`]; empty where all edges are straight. Two cells at an edge have the
+    /// same bits there.
+    pub bulges: Vec<Bulge>,
 }
 
 impl Mesh {
     /// The corners of a cell, in m: corner k at the parent coordinates (0,0), (1,0), (1,1), (0,1).
     pub fn corners(&self, cell: usize) -> [[f64; 2]; 4] {
         self.cells[cell].map(|node| self.nodes[node])
+    }
+
+    /// The map of a cell.
+    pub fn map(&self, cell: usize) -> CellMap {
+        let bulge = self.bulges.get(cell).filter(|bulge| **bulge != Bulge::default()).copied();
+        CellMap { corners: self.corners(cell), bulge }
+    }
+
+    /// How many cells have a curved edge.
+    pub fn curved_cells(&self) -> usize {
+        self.bulges.iter().filter(|bulge| **bulge != Bulge::default()).count()
     }
 
     /// The number of a cell in messages: its number in the file, or its index from 1 if the mesh comes from no file.
@@ -56,13 +71,17 @@ impl Mesh {
 
     /// min_e h_e, m: the time step is proportional to it.
     pub fn smallest_h(&self) -> f64 {
-        (0..self.cells.len()).map(|cell| map::h_e(&self.corners(cell))).fold(f64::INFINITY, f64::min)
+        (0..self.cells.len()).map(|cell| map::h_e(&self.map(cell))).fold(f64::INFINITY, f64::min)
     }
 
-    /// The lower left and the upper right corner of the box around its nodes, m.
+    /// The lower left and the upper right corner of the box around its nodes and the middles of its edges, m.
     pub fn extent(&self) -> [[f64; 2]; 2] {
         let start = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        self.nodes.iter().fold(start, |[low, high], x| {
+        let middles = (0..self.bulges.len()).flat_map(|cell| {
+            let map = self.map(cell);
+            [[0.0, 0.5], [1.0, 0.5], [0.5, 0.0], [0.5, 1.0]].map(|xi| map::position(&map, xi))
+        });
+        self.nodes.iter().copied().chain(middles).fold(start, |[low, high], x| {
             [[low[0].min(x[0]), low[1].min(x[1])], [high[0].max(x[0]), high[1].max(x[1])]]
         })
     }

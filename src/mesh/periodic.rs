@@ -28,6 +28,8 @@ struct Edge {
     cell: usize,
     face: usize,
     ends: [[f64; 2]; 2],
+    /// From the middle of its chord to its own.
+    bulge: [f64; 2],
 }
 
 impl Edge {
@@ -55,7 +57,7 @@ fn join(mesh: &Mesh, pair: [usize; 2], links: &mut [[Link; 4]]) -> Result<(), Er
     let mut partners = Partners::new(&second);
     for edge in &first {
         let moved = edge.ends.map(|x| [x[0] + shift[0], x[1] + shift[1]]);
-        let Some((other, flip)) = partners.take(moved) else {
+        let Some((other, flip)) = partners.take(moved, edge.bulge) else {
             return Err(Error::PeriodicMismatch {
                 at: edge.ends,
                 cell: mesh.number(edge.cell),
@@ -74,7 +76,8 @@ fn edges(mesh: &Mesh, links: &[[Link; 4]], group: usize) -> Vec<Edge> {
     let faces = (0..links.len()).flat_map(|cell| (0..4).map(move |face| (cell, face)));
     let of_group = faces.filter(|&(cell, face)| links[cell][face] == Link::Boundary(group));
     let ends = |cell, face| mesh.face_nodes(cell, face).map(|node| mesh.nodes[node]);
-    of_group.map(|(cell, face)| Edge { cell, face, ends: ends(cell, face) }).collect()
+    let bulge = |cell: usize, face: usize| mesh.map(cell).bulge.map_or([0.0; 2], |bulge| bulge[face]);
+    of_group.map(|(cell, face)| Edge { cell, face, ends: ends(cell, face), bulge: bulge(cell, face) }).collect()
 }
 
 /// The mean of the midpoints of the edges: it differs between the two groups by the translation only.
@@ -103,15 +106,18 @@ impl<'a> Partners<'a> {
         x.map(|x| (x / self.width).floor() as i64)
     }
 
-    /// The edge with these ends, and whether it runs the other way.
-    fn take(&mut self, ends: [[f64; 2]; 2]) -> Option<(&'a Edge, bool)> {
+    /// The edge with these ends and this curve, and whether it runs the other way.
+    fn take(&mut self, ends: [[f64; 2]; 2], bulge: [f64; 2]) -> Option<(&'a Edge, bool)> {
         let limit = MATCH * distance(ends[0], ends[1]);
         let near = |a: [[f64; 2]; 2], b: [[f64; 2]; 2]| (0..2).all(|k| distance(a[k], b[k]) <= limit);
         let [i, j] = self.bucket([0, 1].map(|k| 0.5 * (ends[0][k] + ends[1][k])));
         // A midpoint may lie on the border of its bucket.
         for key in (-1..=1).flat_map(|di| (-1..=1).map(move |dj| [i + di, j + dj])) {
             let Some(bucket) = self.buckets.get_mut(&key) else { continue };
-            let fits = |edge: &&Edge| near(edge.ends, ends) || near([edge.ends[1], edge.ends[0]], ends);
+            let fits = |edge: &&Edge| {
+                let same = near(edge.ends, ends) || near([edge.ends[1], edge.ends[0]], ends);
+                same && distance(edge.bulge, bulge) <= limit
+            };
             if let Some(k) = bucket.iter().position(fits) {
                 let edge = bucket.swap_remove(k);
                 return Some((edge, !near(edge.ends, ends)));

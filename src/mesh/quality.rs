@@ -17,26 +17,29 @@ pub struct Shape {
     pub aspect: f64,
 }
 
+/// det / (|a| |b|) at a place of a cell, a and b the tangents dX/dxi1 and dX/dxi2.
+pub fn scaled_jacobian(cell: &impl map::Map, xi: [f64; 2]) -> f64 {
+    let j = map::jacobian(cell, xi);
+    map::determinant(&j) / (j[0][0].hypot(j[1][0]) * j[0][1].hypot(j[1][1]))
+}
+
 /// det / (|a| |b|) at each corner, a and b the edges that leave it.
-pub fn corner_jacobians(corners: &map::Corners) -> [f64; 4] {
-    map::CORNER_XI.map(|xi| {
-        let j = map::jacobian(corners, xi);
-        map::determinant(&j) / (j[0][0].hypot(j[1][0]) * j[0][1].hypot(j[1][1]))
-    })
+pub fn corner_jacobians(cell: &impl map::Map) -> [f64; 4] {
+    map::CORNER_XI.map(|xi| scaled_jacobian(cell, xi))
 }
 
 /// The shape of a cell.
-pub fn shape(corners: &map::Corners) -> Shape {
+pub fn shape(cell: &impl map::Map) -> Shape {
     let lengths: [f64; 4] = std::array::from_fn(|k| {
-        let (a, b) = (corners[k], corners[(k + 1) % 4]);
+        let (a, b) = (cell.corners()[k], cell.corners()[(k + 1) % 4]);
         (b[0] - a[0]).hypot(b[1] - a[1])
     });
     let longest = lengths.into_iter().fold(0.0, f64::max);
     let shortest = lengths.into_iter().fold(f64::INFINITY, f64::min);
     Shape {
-        scaled_jacobian: corner_jacobians(corners).into_iter().fold(f64::INFINITY, f64::min),
-        h_e: map::h_e(corners),
-        area: map::area(corners),
+        scaled_jacobian: corner_jacobians(cell).into_iter().fold(f64::INFINITY, f64::min),
+        h_e: map::h_e(cell),
+        area: map::area(cell),
         aspect: longest / shortest,
     }
 }
@@ -70,7 +73,7 @@ impl Quality {
             area: 0.0,
         };
         for cell in 0..mesh.cells.len() {
-            quality.take(cell, &shape(&mesh.corners(cell)));
+            quality.take(cell, &shape(&mesh.map(cell)));
         }
         quality.mean_scaled_jacobian /= mesh.cells.len().max(1) as f64;
         quality

@@ -1,10 +1,11 @@
 //! Uniform refinement: every cell becomes k x k cells.
 
-use super::{BoundaryEdge, FACE_CORNERS, Mesh, map};
+use super::map::{self, Bulge};
+use super::{BoundaryEdge, FACE_CORNERS, Mesh};
 use std::collections::HashMap;
 
 impl Mesh {
-    /// The mesh whose cells are k x k parts of these, cut along their parent coordinates (k >= 1): the same bilinear
+    /// The mesh whose cells are k x k parts of these, cut along their parent coordinates (k >= 1): the same
     /// geometry and the same groups. Part (i, j) of cell c has the index k^2 c + k j + i. The new cells are numbered from 1.
     pub fn refined(&self, k: usize) -> Mesh {
         if k <= 1 {
@@ -22,6 +23,7 @@ impl Mesh {
             }
         }
         out.original = (1..=out.cells.len() as u64).collect();
+        out.bulges = self.bulges.iter().flat_map(|bulge| parts(bulge, k)).collect();
         for edge in &self.edges {
             let part = |along: usize| match edge.face {
                 0 => k * along,
@@ -34,6 +36,27 @@ impl Mesh {
         }
         out
     }
+}
+
+/// The bulges of the k x k parts of a cell. Each is 1/k^2 of the curvature of the line that the edge of the part lies on; that of the
+/// middle, which is of degree 2 in both directions, 1/k^4.
+fn parts(bulge: &Bulge, k: usize) -> impl Iterator<Item = Bulge> {
+    let (bulge, steps) = (*bulge, k as f64);
+    let along = move |pair: usize, step: usize| {
+        let s = step as f64 / steps;
+        // The ends to the last bit, so that neighbours agree.
+        [0, 1].map(|i| match step {
+            0 => bulge[pair][i],
+            _ if step == k => bulge[pair + 1][i],
+            _ => (1.0 - s) * bulge[pair][i] + s * bulge[pair + 1][i] + 4.0 * s * (1.0 - s) * bulge[4][i],
+        })
+    };
+    (0..k).flat_map(move |j| (0..k).map(move |i| (i, j))).map(move |(i, j)| {
+        let faces =
+            [along(0, i), along(0, i + 1), along(2, j), along(2, j + 1)].map(|d| d.map(|d| d / (steps * steps)));
+        let [a, b, c, d] = faces;
+        [a, b, c, d, bulge[4].map(|d| d / steps.powi(4))]
+    })
 }
 
 /// Nodes of the finer mesh that cells share.
@@ -50,7 +73,7 @@ impl Nodes<'_> {
     /// The node at (i, j) / k of a cell. It is made if it does not exist yet.
     fn find(&mut self, cell: usize, [i, j]: [usize; 2], out: &mut Mesh) -> usize {
         let k = self.k;
-        let corners = self.mesh.corners(cell);
+        let map = self.mesh.map(cell);
         let mut new = |x: [f64; 2]| {
             out.nodes.push(x);
             out.nodes.len() - 1
@@ -65,7 +88,7 @@ impl Nodes<'_> {
             _ if i == k => 1,
             (_, 0) => 2,
             _ if j == k => 3,
-            _ => return new(map::position(&corners, [i as f64 / k as f64, j as f64 / k as f64])),
+            _ => return new(map::position(&map, [i as f64 / k as f64, j as f64 / k as f64])),
         };
         let [first, last] = FACE_CORNERS[face].map(|corner| self.mesh.cells[cell][corner]);
         let along = if face < 2 { j } else { i };
@@ -74,7 +97,9 @@ impl Nodes<'_> {
             // Computed from the shared ends, not from the cell: both sides get the same bits.
             let [a, b] = ends.map(|node| self.mesh.nodes[node]);
             let s = step as f64 / k as f64;
-            new([0, 1].map(|axis| a[axis] + s * (b[axis] - a[axis])))
+            let straight = [0, 1].map(|axis| a[axis] + s * (b[axis] - a[axis]));
+            let bulge = map.bulge.map_or([0.0; 2], |bulge| bulge[face]);
+            new([0, 1].map(|axis| straight[axis] + 4.0 * s * (1.0 - s) * bulge[axis]))
         })
     }
 }
@@ -89,7 +114,7 @@ mod tests {
         assert_eq!((made.cells.len(), made.nodes.len(), made.edges.len()), (24, 35, 20));
         let centres = |mesh: &crate::mesh::Mesh| {
             let mut all: Vec<[i64; 2]> = (0..mesh.cells.len())
-                .map(|cell| map::position(&mesh.corners(cell), [0.5, 0.5]).map(|x| (x * 1e6).round() as i64))
+                .map(|cell| map::position(&mesh.map(cell), [0.5, 0.5]).map(|x| (x * 1e6).round() as i64))
                 .collect();
             all.sort_unstable();
             all
@@ -113,9 +138,8 @@ mod tests {
         }
         let fine = mesh.refined(3);
         assert_eq!((fine.cells.len(), fine.nodes.len(), fine.edges.len()), (36, 49, 24));
-        let area = |mesh: &crate::mesh::Mesh| -> f64 {
-            (0..mesh.cells.len()).map(|cell| map::area(&mesh.corners(cell))).sum()
-        };
+        let area =
+            |mesh: &crate::mesh::Mesh| -> f64 { (0..mesh.cells.len()).map(|cell| map::area(&mesh.map(cell))).sum() };
         // Rounding of 36 sums.
         assert!((area(&fine) - area(&mesh)).abs() < 1e-13);
         // Every face has its neighbour or its group.

@@ -35,6 +35,7 @@ pub fn rectangle(size: [f64; 2], cells: [usize; 2]) -> Result<Mesh, Error> {
         groups: vec!["body".to_owned()],
         edges,
         edge_groups: ["left", "right", "bottom", "top"].map(str::to_owned).to_vec(),
+        bulges: vec![],
         original: (1..=count as u64).collect(),
     })
 }

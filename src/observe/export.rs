@@ -62,8 +62,8 @@ pub fn points(
     positions: Positions,
 ) -> PointCloud {
     let place = |cell: usize| {
-        let corners = mesh.corners(cell);
-        cloud.of(cell).iter().map(move |&xi| map::position(&corners, xi))
+        let map = mesh.map(cell);
+        cloud.of(cell).iter().map(move |&xi| map::position(&map, xi))
     };
     let mut places: Vec<_> = (0..mesh.cells.len()).flat_map(place).map(|[x, y]| [x, y, 0.0]).collect();
     if positions == Positions::Deformed {

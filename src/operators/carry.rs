@@ -123,7 +123,7 @@ pub fn carry(mesh: &Mesh, line: &Line, cloud: &Cloud, limits: &Limits, memory: &
         true => (!on_nodes[class[cell]]).then_some(Cause::Memory),
         false => causes[class[cell]],
     };
-    let h = |cell: usize| map::h_e(&mesh.corners(cell));
+    let h = |cell: usize| map::h_e(&mesh.map(cell));
     let found = |cell: usize| {
         let given = Certificate { h: h(cell), ..fits[class[cell]] };
         cause(cell).map(|cause| Deficient { cell, cause, given })
@@ -147,8 +147,8 @@ pub fn carry(mesh: &Mesh, line: &Line, cloud: &Cloud, limits: &Limits, memory: &
         let given = cloud.first[cell]..cloud.first[cell + 1];
         let count = match (cause(cell), &trees[mesh.cell_group[cell]]) {
             (Some(_), Some(tree)) => {
-                let corners = mesh.corners(cell);
-                out.source.extend(nodes.iter().map(|&xi| nearest(tree, map::position(&corners, xi))));
+                let map = mesh.map(cell);
+                out.source.extend(nodes.iter().map(|&xi| nearest(tree, map::position(&map, xi))));
                 out.cloud.xi.extend(&nodes);
                 nodes.len()
             }
@@ -260,9 +260,9 @@ mod tests {
         (0..16).for_each(|cell| mesh.cell_group[cell] = usize::from(cell % 4 >= 2));
         let found = carried(&mesh, &cloud);
         let of_cell = |p: usize| (0..16).find(|&c| (cloud.first[c]..cloud.first[c + 1]).contains(&p)).unwrap();
-        let at = |p: usize| map::position(&mesh.corners(of_cell(p)), cloud.xi[p]);
+        let at = |p: usize| map::position(&mesh.map(of_cell(p)), cloud.xi[p]);
         for (k, &xi) in found.cloud.of(5).iter().enumerate() {
-            let x = map::position(&mesh.corners(5), xi);
+            let x = map::position(&mesh.map(5), xi);
             let distance = |p: usize| (at(p)[0] - x[0]).hypot(at(p)[1] - x[1]);
             let source = found.source[found.cloud.first[5] + k];
             assert!(of_cell(source) % 4 < 2);

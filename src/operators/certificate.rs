@@ -56,9 +56,7 @@ pub fn certify(mesh: &Mesh, line: &Line, sampling: Sampling) -> Result<Vec<Certi
         Ok(Certificate { class, ..found })
     };
     let fits = examples.par_iter().map(fit).collect::<Result<Vec<_>, Error>>()?;
-    Ok((0..mesh.cells.len())
-        .map(|cell| Certificate { h: map::h_e(&mesh.corners(cell)), ..fits[class[cell]] })
-        .collect())
+    Ok((0..mesh.cells.len()).map(|cell| Certificate { h: map::h_e(&mesh.map(cell)), ..fits[class[cell]] }).collect())
 }
 
 /// The certificate of a cell with these points, without its shape (h = 0, dt = NaN).

@@ -8,7 +8,7 @@
 
 use super::{Line, Matrix};
 use crate::basis::mls::legendre;
-use crate::mesh::map::{self, Corners};
+use crate::mesh::map::{self, Map};
 use nalgebra::DMatrix;
 
 /// K: for g_1, g_2 at the nodes, with P_k the Legendre polynomials,
@@ -74,10 +74,10 @@ impl Curl {
     }
 
     /// Z of a cell from its complement C: C = W^-1 J K^T Y, Z = Y Y^T, packed as [`numbers`] says; `masses` are W.
-    pub fn core(&self, c: &Matrix<f64>, corners: &Corners, line: &Line, masses: &[f64]) -> Vec<f64> {
+    pub fn core(&self, c: &Matrix<f64>, cell: &impl Map, line: &Line, masses: &[f64]) -> Vec<f64> {
         let n = masses.len();
         // J^-1 W C.
-        let parent: Vec<_> = line.nodes().iter().map(|xi| map::inverse(&map::jacobian(corners, *xi))).collect();
+        let parent: Vec<_> = line.nodes().iter().map(|xi| map::inverse(&map::jacobian(cell, *xi))).collect();
         let entry = |r: usize, k: usize| {
             let (axis, a) = (r / n, r % n);
             masses[a] * (parent[a][axis][0] * c.row(a)[k] + parent[a][axis][1] * c.row(n + a)[k])
@@ -101,9 +101,9 @@ impl Curl {
     }
 
     /// F <- Pi F of one cell: `f` as `[component][node]`, `core` gives the packed numbers of its Z.
-    pub fn project(&self, core: impl Fn(usize) -> f64, corners: &Corners, line: &Line, masses: &[f64], f: &mut [f64]) {
+    pub fn project(&self, core: impl Fn(usize) -> f64, cell: &impl Map, line: &Line, masses: &[f64], f: &mut [f64]) {
         let n = masses.len();
-        let jacobians: Vec<_> = line.nodes().iter().map(|xi| map::jacobian(corners, *xi)).collect();
+        let jacobians: Vec<_> = line.nodes().iter().map(|xi| map::jacobian(cell, *xi)).collect();
         for row in f.chunks_exact_mut(2 * n) {
             let g = (0..2 * n).map(|r| {
                 let (axis, a) = (r / n, r % n);

@@ -5,7 +5,8 @@ use super::curl_core::Curl;
 use super::matrix::{Matrix, Pool, Share, classes};
 use super::{Blocks, Geometry, Line};
 use crate::lane::{F8, LANES, prefetch};
-use crate::mesh::{Mesh, map};
+use crate::mesh::Mesh;
+use crate::mesh::map::{self, CellMap};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -61,24 +62,25 @@ impl CurlFree {
     /// From the matrices of all blocks.
     pub fn new(pool: CurlPool, mesh: &Mesh, blocks: &Blocks, line: &Line) -> Self {
         let curl = Curl::new(line);
-        let masses = |corners: &[[f64; 2]; 4]| (0..line.m * line.m).map(|a| mass(corners, line, a)).collect::<Vec<_>>();
+        let masses = |cell: &CellMap| (0..line.m * line.m).map(|a| mass(cell, line, a)).collect::<Vec<_>>();
         let congruent = Congruent::of(mesh);
-        let (mut example, mut mixed) = (vec![[[0.0; 2]; 4]; pool.shared.len()], vec![[0; LANES]; pool.own.len()]);
+        let none = CellMap { corners: [[0.0; 2]; 4], bulge: None };
+        let (mut example, mut mixed) = (vec![none; pool.shared.len()], vec![[0; LANES]; pool.own.len()]);
         for (share, cells) in pool.share.iter().zip(&blocks.cells) {
             match *share {
                 Share::Shared(k) => example[k] = congruent.examples[congruent.class[cells[0]]],
                 Share::Own(k) => mixed[k] = *cells,
             }
         }
-        let class = |(c, corners): (Matrix<f64>, [[f64; 2]; 4])| match Halves::of(&c, &masses(&corners)) {
+        let class = |(c, cell): (Matrix<f64>, CellMap)| match Halves::of(&c, &masses(&cell)) {
             Some(halves) => Class::Halves(halves),
             None => Class::Whole(c),
         };
         let core = |(c, cells): (&Matrix<F8>, &[usize; LANES])| {
             let lanes: [Vec<f64>; LANES] = std::array::from_fn(|lane| {
                 let c = Matrix::new(c.rows, c.columns, c.data.iter().map(|entry| entry.0[lane]).collect());
-                let corners = mesh.corners(cells[lane]);
-                curl.core(&c, &corners, line, &masses(&corners))
+                let cell = mesh.map(cells[lane]);
+                curl.core(&c, &cell, line, &masses(&cell))
             });
             (0..lanes[0].len()).map(|e| F8(lanes.each_ref().map(|lane| lane[e]))).collect()
         };
@@ -90,7 +92,7 @@ impl CurlFree {
     /// Builds C for all blocks.
     pub fn matrices(mesh: &Mesh, blocks: &Blocks, line: &Line) -> CurlPool {
         let Congruent { class, examples } = Congruent::of(mesh);
-        let all: Vec<_> = examples.par_iter().map(|corners| complement(corners, line)).collect();
+        let all: Vec<_> = examples.par_iter().map(|cell| complement(cell, line)).collect();
         let columns = all.iter().map(|c| c.columns).max().unwrap_or(0);
         Pool::new(&blocks.cells, &class, all, |lanes| {
             let padded = lanes.map(|c| widen(c, columns));
@@ -108,7 +110,7 @@ impl CurlFree {
             },
             Share::Own(k) => {
                 let core = |e: usize| self.pool.own[k][e].0[lane];
-                self.curl.project(core, &geometry.corners_of(block, lane), line, &masses, f);
+                self.curl.project(core, &geometry.map_of(block, lane), line, &masses, f);
             }
         }
     }
@@ -138,8 +140,8 @@ impl CurlFree {
 struct Congruent {
     /// Of each cell.
     class: Vec<usize>,
-    /// The corners that stand for each class, the first one at the origin.
-    examples: Vec<[[f64; 2]; 4]>,
+    /// The cell that stands for each class, its first corner at the origin.
+    examples: Vec<CellMap>,
 }
 
 impl Congruent {
@@ -148,15 +150,22 @@ impl Congruent {
     fn of(mesh: &Mesh) -> Self {
         let size = mesh.nodes.iter().flatten().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
         let edges = |cell: usize| {
-            let c = mesh.corners(cell);
-            c.map(|x| [0, 1].map(|i| x[i] - c[0][i]))
+            let map = mesh.map(cell);
+            map.moved(map.corners[0].map(|x| -x))
         };
-        let key = |cell: usize| edges(cell).map(|x| x.map(|x| (x / (size * 1e-12)).round() as i64));
+        let rounded = |x: f64| (x / (size * 1e-12)).round() as i64;
+        let key = |cell: usize| {
+            let CellMap { corners, bulge } = edges(cell);
+            (corners.map(|x| x.map(rounded)), bulge.map(|bulge| bulge.map(|d| d.map(rounded))))
+        };
         let (class, first) = classes(mesh.cells.len(), key);
         let mut examples: Vec<_> = first.into_iter().map(edges).collect();
         for (cell, &class) in class.iter().enumerate() {
             let (least, own) = (&mut examples[class], edges(cell));
-            let pairs = own.as_flattened().iter().zip(least.as_flattened());
+            let numbers =
+                |map: &CellMap| [map.corners.as_flattened(), map.bulge.unwrap_or_default().as_flattened()].concat();
+            let (ours, theirs) = (numbers(&own), numbers(least));
+            let pairs = ours.iter().zip(&theirs);
             if pairs.map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne()).is_some_and(Ordering::is_lt) {
                 *least = own;
             }
@@ -250,7 +259,7 @@ fn widen(c: &Matrix<f64>, columns: usize) -> Matrix<f64> {
 }
 
 /// C of one cell: W^(-1/2) times an orthonormal basis of the complement of W^(1/2) times the gradients.
-fn complement(corners: &[[f64; 2]; 4], line: &Line) -> Matrix<f64> {
+fn complement(corners: &CellMap, line: &Line) -> Matrix<f64> {
     let n = line.m * line.m;
     let root: Vec<f64> = (0..n).map(|a| mass(corners, line, a).sqrt()).collect();
     let gradients = gradients(corners, line);
@@ -272,12 +281,12 @@ fn complement(corners: &[[f64; 2]; 4], line: &Line) -> Matrix<f64> {
     Matrix::new(2 * n, outside.len(), entries.collect())
 }
 
-fn mass(corners: &[[f64; 2]; 4], line: &Line, a: usize) -> f64 {
+fn mass(corners: &CellMap, line: &Line, a: usize) -> f64 {
     line.basis.weight_2d(a) * map::determinant(&map::jacobian(corners, line.basis.node_2d(a)))
 }
 
 /// Columns [direction][node]: gradients in X of the monomials of Q_N in xi and of P_(N+1) in (X - Xc)/h.
-fn gradients(corners: &[[f64; 2]; 4], line: &Line) -> Vec<Vec<f64>> {
+fn gradients(corners: &CellMap, line: &Line) -> Vec<Vec<f64>> {
     let (m, centre, h) = (line.m as i32, map::position(corners, [0.5, 0.5]), map::h_e(corners));
     let nodes = line.nodes();
     let mut columns = Vec::new();
@@ -343,7 +352,7 @@ mod tests {
             for degree in 1..=6 {
                 let line = Line::new(degree);
                 let blocks = Blocks::new(&[0; 8], &links(&mesh).unwrap());
-                let geometry = Geometry::new(&mesh, &blocks);
+                let geometry = Geometry::new(&mesh, &blocks, &line);
                 let all = CurlFree::new(CurlFree::matrices(&mesh, &blocks, &line), &mesh, &blocks, &line);
                 let is = match &all.pool.shared[..] {
                     [Class::Halves(_)] => 0,

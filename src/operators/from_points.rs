@@ -74,9 +74,9 @@ fn around(
     cell: usize,
     tree: &Tree,
 ) -> Result<(Vec<f64>, Vec<usize>), Error> {
-    let corners = mesh.corners(cell);
-    let at: Vec<[f64; 2]> = line.nodes().into_iter().map(|xi| map::position(&corners, xi)).collect();
-    let middle = map::position(&corners, [0.5, 0.5]);
+    let map = mesh.map(cell);
+    let at: Vec<[f64; 2]> = line.nodes().into_iter().map(|xi| map::position(&map, xi)).collect();
+    let middle = map::position(&map, [0.5, 0.5]);
     let unknowns = line.m * (line.m + 1) / 2;
     // The number of points goes from as few as are safe on average to those of some rings of cells.
     for count in [2, 3, 4, 6, 8, 12, 16, 24].map(|times| times * unknowns) {
@@ -129,12 +129,12 @@ mod tests {
             let field = |x: [f64; 2]| [x[0].powi(n) - 0.5 * x[1], x[1].powi(n) + x[0] + 2.0];
             let values: Vec<f64> = (0..16)
                 .flat_map(|cell| cloud.of(cell).iter().map(move |&xi| (cell, xi)))
-                .flat_map(|(cell, xi)| field(map::position(&mesh.corners(cell), xi)))
+                .flat_map(|(cell, xi)| field(map::position(&mesh.map(cell), xi)))
                 .collect();
             let found = from_points(&mesh, &line, &cloud, &Limits::of_degree(degree), &values, 2).unwrap();
             for (cell, values) in found.chunks(2 * line.m * line.m).enumerate() {
                 for (a, &xi) in line.nodes().iter().enumerate() {
-                    let exact = field(map::position(&mesh.corners(cell), xi));
+                    let exact = field(map::position(&mesh.map(cell), xi));
                     for k in 0..2 {
                         // Rounding of numbers up to 3 times the Lebesgue constant, and the condition of the fit.
                         assert!((values[k * line.m * line.m + a] - exact[k]).abs() < 1e-12, "S{degree} cell {cell}");

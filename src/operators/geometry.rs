@@ -1,11 +1,14 @@
-//! Metric terms of bilinear cells, per block of 8.
+//! Metric terms of cells, per block of 8.
 //!
-//! All metric terms follow from the three vectors of the map X(xi) = X0 + a xi1 + b xi2 + c xi1 xi2. Kernels compute
-//! them where they need them: a few operations cost less than reading some numbers for each node from memory.
+//! Of straight cells all metric terms follow from the three vectors of the map X(xi) = X0 + a xi1 + b xi2 + c xi1 xi2. Kernels
+//! compute them where they need them: a few operations cost less than reading some numbers for each node from memory. Blocks with
+//! a curved cell have theirs in memory ([`super::curved`]).
 
+use super::curved::{Curved, CurvedBlock};
 use super::{Blocks, Line};
 use crate::lane::{F8, LANES, Lane, Lanes, load_array};
-use crate::mesh::{FACES, Mesh, map};
+use crate::mesh::map::{self, CellMap};
+use crate::mesh::{FACES, Mesh};
 
 /// The map of a cell, or with [`F8`] of the 8 cells of a block; m.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,33 +104,178 @@ pub fn determinant<L: Lane>(one: [L; 2], two: [L; 2]) -> L {
     one[0].mul_add(two[1], -(one[1] * two[0]))
 }
 
+/// J dxi_1/dX and J dxi_2/dX at the nodes (i, j) of a block, as a kernel has them.
+pub trait Cofactors<L>: Copy {
+    /// J dxi_1/dX, m.
+    fn one(&self, i: usize, j: usize) -> [L; 2];
+    /// J dxi_2/dX, m.
+    fn two(&self, i: usize, j: usize) -> [L; 2];
+}
+
+/// Those of straight cells: the first by the nodes of xi1, the second by those of xi2.
+impl<L: Lane, const M: usize> Cofactors<L> for [[[L; 2]; M]; 2] {
+    #[inline(always)]
+    fn one(&self, i: usize, _: usize) -> [L; 2] {
+        self[0][i]
+    }
+
+    #[inline(always)]
+    fn two(&self, _: usize, j: usize) -> [L; 2] {
+        self[1][j]
+    }
+}
+
+/// What gives the [`Cofactors`] of a block to a kernel.
+pub trait NodeMetric: Copy {
+    /// What they are with M nodes a direction.
+    type At<L: Lanes, const M: usize>: Cofactors<L>;
+    /// Finds them.
+    fn cofactors<L: Lanes, const M: usize>(self, line: &Line) -> Self::At<L, M>;
+}
+
+impl NodeMetric for &Metric<F8> {
+    type At<L: Lanes, const M: usize> = [[[L; 2]; M]; 2];
+
+    #[inline(always)]
+    fn cofactors<L: Lanes, const M: usize>(self, line: &Line) -> [[[L; 2]; M]; 2] {
+        let (metric, nodes, mut out) = (self.load::<L>(), &line.basis.nodes[..M], [[[L::zero(); 2]; M]; 2]);
+        for k in 0..M {
+            out[0][k] = metric.cofactor1(nodes[k]);
+            out[1][k] = metric.cofactor2(nodes[k]);
+        }
+        out
+    }
+}
+
+/// The metric terms of a block.
+#[derive(Debug, Clone, Copy)]
+pub struct BlockMetric<'a> {
+    /// Those of its cells with straight edges.
+    pub straight: &'a Metric<F8>,
+    /// Those of its cells as they are; none where all edges are straight.
+    pub curved: Option<CurvedBlock<'a>>,
+}
+
+/// Runs `$body` with `$terms` as the [`NodeMetric`] of a block: once for straight cells, once for curved ones.
+macro_rules! with_terms {
+    ($metric:expr, $terms:ident => $body:expr) => {
+        match $metric.curved {
+            None => {
+                let $terms = $metric.straight;
+                $body
+            }
+            Some($terms) => $body,
+        }
+    };
+}
+pub(crate) use with_terms;
+
+impl<'a> BlockMetric<'a> {
+    /// The unit outward normal at a point of a face and the length of the face there (|dX/ds|, m), for the points of a face one after the
+    /// other. On straight faces one is as the other: see [`BlockMetric::runs`].
+    #[inline(always)]
+    pub fn at_face<L: Lanes>(&self, face: usize, point: usize) -> ([L; 2], L) {
+        match self.curved {
+            None => {
+                let metric = self.straight.load::<L>();
+                (metric.normal(face), metric.length(face))
+            }
+            Some(curved) => curved.at_face(face, point),
+        }
+    }
+
+    /// How the `points` of a face lie in runs of one normal and length: the number of runs, and of points in each.
+    #[inline(always)]
+    pub fn runs(&self, points: usize) -> [usize; 2] {
+        if self.curved.is_some() { [points, 1] } else { [1, points] }
+    }
+
+    /// The unit outward normals of the four faces, of straight cells; those of curved ones are [`BlockMetric::normal_at`].
+    #[inline(always)]
+    pub fn normals<L: Lanes>(&self) -> [[L; 2]; FACES] {
+        let metric = self.straight.load::<L>();
+        [metric.normal(0), metric.normal(1), metric.normal(2), metric.normal(3)]
+    }
+
+    /// The unit outward normal at a point of a face, `straight` being that of a straight face.
+    #[inline(always)]
+    pub fn normal_at<L: Lanes>(&self, straight: [L; 2], face: usize, point: usize) -> [L; 2] {
+        match self.curved {
+            None => straight,
+            Some(curved) => curved.at_face(face, point).0,
+        }
+    }
+
+    /// The unit outward normal at a point of a face of the cell in a lane, and the length of the face there, m.
+    pub fn at_face_of(&self, lane: usize, face: usize, point: usize) -> ([f64; 2], f64) {
+        match self.curved {
+            None => {
+                let metric = self.straight.lane(lane);
+                (metric.normal(face), metric.length(face))
+            }
+            Some(curved) => curved.at_face_of(lane, face, point),
+        }
+    }
+
+    /// J dxi_1/dX and J dxi_2/dX at node (i, j), m.
+    #[inline(always)]
+    pub fn at_node<L: Lanes>(&self, line: &Line, i: usize, j: usize) -> [[L; 2]; 2] {
+        match self.curved {
+            None => {
+                let (metric, nodes) = (self.straight.load::<L>(), &line.basis.nodes);
+                [metric.cofactor1(nodes[i]), metric.cofactor2(nodes[j])]
+            }
+            Some(curved) => [curved.one(i, j), curved.two(i, j)],
+        }
+    }
+
+    /// The same of the cell in a lane.
+    pub fn at_node_of(&self, line: &Line, lane: usize, i: usize, j: usize) -> [[f64; 2]; 2] {
+        match self.curved {
+            None => {
+                let (metric, nodes) = (self.straight.lane(lane), &line.basis.nodes);
+                [metric.cofactor1(nodes[i]), metric.cofactor2(nodes[j])]
+            }
+            Some(curved) => curved.at_node_of(lane, i, j),
+        }
+    }
+
+    /// h_e, m.
+    pub fn h(&self) -> &'a F8 {
+        &self.straight.h
+    }
+}
+
 /// Metric terms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
-    /// The map of each block.
+    /// The maps of the corners of each block.
     pub blocks: Vec<Metric<F8>>,
     /// Corners X, m: `[block][corner][2]`.
     pub corners: Vec<F8>,
+    /// Of the blocks with curved cells; none where there are no such cells.
+    curved: Option<Curved>,
 }
 
 impl Geometry {
     /// Metric terms of all blocks.
-    pub fn new(mesh: &Mesh, blocks: &Blocks) -> Self {
-        let mut out = Self { blocks: vec![], corners: vec![] };
+    pub fn new(mesh: &Mesh, blocks: &Blocks, line: &Line) -> Self {
+        let mut out = Self { blocks: vec![], corners: vec![], curved: Curved::of(mesh, blocks, line) };
         for cells in &blocks.cells {
-            out.push(cells.map(|cell| mesh.corners(cell)));
+            out.push(cells.map(|cell| mesh.map(cell)));
         }
         out
     }
 
-    fn push(&mut self, corners: [[[f64; 2]; 4]; LANES]) {
-        let number = |of: &dyn Fn(&map::Corners) -> f64| F8(std::array::from_fn(|lane| of(&corners[lane])));
+    fn push(&mut self, cells: [CellMap; LANES]) {
+        let corners = cells.each_ref().map(|cell| &cell.corners);
+        let number = |of: &dyn Fn(&map::Corners) -> f64| F8(std::array::from_fn(|lane| of(corners[lane])));
         let mut metric = Metric {
             along1: [0, 1].map(|k| number(&|x| x[1][k] - x[0][k])),
             along2: [0, 1].map(|k| number(&|x| x[3][k] - x[0][k])),
             twist: [0, 1].map(|k| number(&|x| (x[0][k] - x[1][k]) + (x[2][k] - x[3][k]))),
             inverse_length: [F8::ZERO; FACES],
-            h: number(&map::h_e),
+            h: F8(cells.each_ref().map(|cell| map::h_e(cell))),
         };
         for lane in 0..LANES {
             let one = metric.lane(lane);
@@ -140,9 +288,18 @@ impl Geometry {
         self.corners.extend((0..8).map(|k| number(&|x| x[k / 2][k % 2])));
     }
 
-    /// Corners of the cell in a lane of a block.
-    pub fn corners_of(&self, block: usize, lane: usize) -> [[f64; 2]; 4] {
-        std::array::from_fn(|corner| std::array::from_fn(|k| self.corners[(block * 4 + corner) * 2 + k].0[lane]))
+    /// The metric terms of a block.
+    #[inline]
+    pub fn of(&self, block: usize) -> BlockMetric<'_> {
+        let curved = self.curved.as_ref().and_then(|curved| curved.block(block));
+        BlockMetric { straight: &self.blocks[block], curved }
+    }
+
+    /// The map of the cell in a lane of a block.
+    pub fn map_of(&self, block: usize, lane: usize) -> CellMap {
+        let corner = |corner: usize| [0, 1].map(|k| self.corners[(block * 4 + corner) * 2 + k].0[lane]);
+        let bulge = self.curved.as_ref().and_then(|curved| curved.bulge(block, lane));
+        CellMap { corners: std::array::from_fn(corner), bulge }
     }
 
     /// h_e of all cells, m, by block.
@@ -150,19 +307,20 @@ impl Geometry {
         self.blocks.iter().map(|metric| &metric.h)
     }
 
-    /// The diagonal, exact mass matrix w_a J_a of the cell in a lane of a block, m^2: by node of `line`.
+    /// The diagonal mass matrix w_a J_a of the cell in a lane of a block, m^2: by node of `line`. On straight cells it is exact.
     pub fn masses(&self, line: &Line, block: usize, lane: usize) -> impl Iterator<Item = f64> {
-        let metric = self.blocks[block].lane(lane);
+        let metric = self.of(block);
         let nodes = (0..line.m).flat_map(move |i| (0..line.m).map(move |j| (i, j)));
         nodes.map(move |(i, j)| {
-            let (xi1, xi2) = (line.basis.nodes[i], line.basis.nodes[j]);
             let weight = line.basis.weights[i] * line.basis.weights[j];
-            weight * determinant(metric.cofactor1(xi1), metric.cofactor2(xi2))
+            let [one, two] = metric.at_node_of(line, lane, i, j);
+            weight * determinant(one, two)
         })
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.blocks[..]) + size_of_val(&self.corners[..])
+        let curved = self.curved.as_ref().map_or(0, Curved::bytes);
+        size_of_val(&self.blocks[..]) + size_of_val(&self.corners[..]) + curved
     }
 }

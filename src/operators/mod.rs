@@ -5,6 +5,7 @@ pub mod carry;
 pub mod certificate;
 pub mod curl_core;
 pub mod curl_free;
+pub mod curved;
 pub mod from_points;
 pub mod geometry;
 pub mod matrix;
@@ -19,7 +20,8 @@ pub use carry::{Carried, Limits, carry};
 pub use certificate::{Certificate, Class};
 pub use curl_free::CurlFree;
 pub use from_points::from_points;
-pub use geometry::{Geometry, Metric, determinant};
+pub(crate) use geometry::with_terms;
+pub use geometry::{BlockMetric, Cofactors, Geometry, Metric, NodeMetric, determinant};
 pub use matrix::{Matrix, Pool, Share};
 pub use point_matrices::PointMatrices;
 pub use points::{Points, Sampling};
@@ -101,7 +103,7 @@ impl Operators {
 
     /// Completes stored matrices by the parts that are quickly computed from the mesh.
     pub fn assemble(mesh: &Mesh, line: Line, blocks: Blocks, needs: &Needs, stored: Stored) -> Self {
-        let geometry = Geometry::new(mesh, &blocks);
+        let geometry = Geometry::new(mesh, &blocks, &line);
         let points = needs.sampling.zip(stored.points).map(|(s, pool)| Points::new(mesh, &blocks, &line, s, pool));
         let curl_free = stored.curl_free.map(|pool| CurlFree::new(pool, mesh, &blocks, &line));
         Self { degree: needs.degree, line, blocks, geometry, points, curl_free, key: String::new() }
@@ -138,12 +140,12 @@ impl Operators {
 
     /// w_a J_a of the nodes of a cell, m^2: its mass matrix. Zeros after the last node.
     pub fn node_weights(&self, block: usize, lane: usize) -> [f64; MOST_NODES] {
-        let (metric, basis) = (self.geometry.blocks[block].lane(lane), &self.line.basis);
+        let (metric, basis) = (self.geometry.of(block), &self.line.basis);
         let mut out = [0.0; MOST_NODES];
         for (a, weight) in out.iter_mut().enumerate().take(self.nodes()) {
             let (i, j) = (a / self.line.m, a % self.line.m);
-            let jacobian = determinant(metric.cofactor1(basis.nodes[i]), metric.cofactor2(basis.nodes[j]));
-            *weight = basis.weights[i] * basis.weights[j] * jacobian;
+            let [one, two] = metric.at_node_of(&self.line, lane, i, j);
+            *weight = basis.weights[i] * basis.weights[j] * determinant(one, two);
         }
         out
     }

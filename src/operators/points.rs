@@ -81,7 +81,7 @@ impl Points {
             let mut metric = Vec::with_capacity(padded);
             for p in 0..padded {
                 let xi = cells.map(|cell| *of(cell).get(p).unwrap_or(&of(cell)[0]));
-                metric.push(inverse(cells.map(|cell| mesh.corners(cell)), xi));
+                metric.push(inverse(&cells.map(|cell| mesh.map(cell)), xi));
                 out.parent.extend((0..2).map(|k| F8(xi.map(|xi| xi[k]))));
             }
             out.hold(block, metric);
@@ -128,9 +128,9 @@ impl Points {
 }
 
 /// dxi_b/dX_a `[b][a]` at one point of each lane.
-fn inverse(corners: [[[f64; 2]; 4]; LANES], xi: [[f64; 2]; LANES]) -> [F8; 4] {
+fn inverse(maps: &[map::CellMap; LANES], xi: [[f64; 2]; LANES]) -> [F8; 4] {
     let inverse: [[[f64; 2]; 2]; LANES] =
-        std::array::from_fn(|lane| map::inverse(&map::jacobian(&corners[lane], xi[lane])));
+        std::array::from_fn(|lane| map::inverse(&map::jacobian(&maps[lane], xi[lane])));
     std::array::from_fn(|k| F8(inverse.map(|m| m[k / 2][k % 2])))
 }
 

@@ -42,7 +42,7 @@ fn masses_sum_to_the_area_and_normals_close_each_cell() {
         let mass: f64 = geometry.masses(&operators.line, block, lane).sum();
         let metric = geometry.blocks[block].lane(lane);
         // Exact quadrature: rounding of a sum of 9 numbers of size .01.
-        assert!((mass - map::area(&mesh.corners(cell))).abs() < 1e-16);
+        assert!((mass - map::area(&mesh.map(cell))).abs() < 1e-16);
         for axis in 0..2 {
             let face = |f: usize| metric.normal(f)[axis] * metric.length(f);
             // The boundary of a cell is closed: four edges of size .3, each a product of six roundings.
@@ -113,7 +113,7 @@ fn transfer_and_slopes_are_exact_on_q_n_for_any_cloud() {
             assert_eq!(points.metric_of(block).is_empty(), !alone);
             for axis in 0..2 {
                 let exact = cloud.of(cell).iter().map(|&xi| {
-                    let inverse = map::inverse(&map::jacobian(&mesh.corners(cell), xi));
+                    let inverse = map::inverse(&map::jacobian(&mesh.map(cell), xi));
                     let along = slope(xi)[0] * inverse[0][axis] + slope(xi)[1] * inverse[1][axis];
                     if alone { slope(xi)[axis] } else { along }
                 });
@@ -198,7 +198,7 @@ fn affine_cells_hold_one_metric_and_bilinear_ones_one_a_point() {
             // The block of the ninth cell alone, padded with copies of it, is affine where that cell is.
             assert!(metric.len() == 4 * count || operators.blocks.count[block] == 1, "{}", metric.len());
             let xi = seed::Layout::Paper.points(3, cell)[0];
-            let inverse = map::inverse(&map::jacobian(&mesh.corners(cell), xi));
+            let inverse = map::inverse(&map::jacobian(&mesh.map(cell), xi));
             for (k, m) in metric[..4].iter().enumerate() {
                 // Rounding of coordinates of size 1 over cells of size .3.
                 assert!((m.0[lane] - inverse[k / 2][k % 2]).abs() < 1e-13, "{cell} {k}");
@@ -227,9 +227,7 @@ fn the_curl_free_complement_is_orthonormal_and_blind_to_gradients() {
                 let against = |field: &dyn Fn(usize, [f64; 2]) -> f64, k: usize| -> f64 {
                     (0..2 * n)
                         .map(|r| {
-                            c(r, k)
-                                * mass(r)
-                                * field(r / n, map::position(&mesh.corners(cell), line.basis.node_2d(r % n)))
+                            c(r, k) * mass(r) * field(r / n, map::position(&mesh.map(cell), line.basis.node_2d(r % n)))
                         })
                         .sum()
                 };

@@ -134,7 +134,7 @@ impl Maps {
 
     /// Where points of a cell are shown.
     fn position(&self, mesh: &Mesh, cell: usize, xi: [f64; 2], point: &Point) -> [f64; 2] {
-        let x = map::position(&mesh.corners(cell), xi);
+        let x = map::position(&mesh.map(cell), xi);
         if self.is_initial { x } else { [x[0] + point.displacement[0], x[1] + point.displacement[1]] }
     }
 

@@ -284,7 +284,7 @@ impl Shape<'_> {
 
     /// The middle of the cell that is farthest along an axis.
     fn farthest(&self, axis: usize, sign: f64) -> [f64; 2] {
-        let middles = (0..self.mesh.cells.len()).map(|cell| map::position(&self.mesh.corners(cell), [0.5; 2]));
+        let middles = (0..self.mesh.cells.len()).map(|cell| map::position(&self.mesh.map(cell), [0.5; 2]));
         middles.max_by(|a, b| (sign * a[axis]).total_cmp(&(sign * b[axis]))).unwrap_or_default()
     }
 }

@@ -21,9 +21,9 @@ impl Scene {
         let solution = if self.materials.len() > 1 { self.build_exact() } else { None };
         let Some(solution) = solution else { return Ok(()) };
         for (cell, material) in self.material_of_cells(mesh).into_iter().enumerate() {
-            let corners = mesh.corners(cell);
+            let map = mesh.map(cell);
             // Just inside of the corners: on an edge both materials are right.
-            let inside = [[0.01, 0.01], [0.99, 0.01], [0.99, 0.99], [0.01, 0.99]].map(|xi| map::position(&corners, xi));
+            let inside = [[0.01, 0.01], [0.99, 0.01], [0.99, 0.99], [0.01, 0.99]].map(|xi| map::position(&map, xi));
             if let Some([x, y]) = inside.into_iter().find(|x| solution.material(*x) != material) {
                 let number = mesh.number(cell);
                 let what =

@@ -24,7 +24,7 @@ impl Scene {
             for (a, xi) in line.nodes().into_iter().enumerate() {
                 let u = |k: usize| values[k * n + a];
                 let (f, v) = ([0, 1, 2, 3].map(u), [4, 5].map(|k| u(k) / density));
-                self.check_initial(f, v, map::position(&mesh.corners(cell), xi), mesh.number(cell))?;
+                self.check_initial(f, v, map::position(&mesh.map(cell), xi), mesh.number(cell))?;
             }
         }
         let mut state = State { time: self.start, ..State::pack(&scheme.operators.blocks, n, components, &cells) };

@@ -118,7 +118,7 @@ impl Scene {
         let (fields, nodes) = (self.sampler().ok()??, Line::new(self.scheme.degree).nodes());
         let (mut count, mut farthest) = (0, 0.0_f64);
         for (cell, xi) in (0..mesh.cells.len()).flat_map(|cell| nodes.iter().map(move |xi| (cell, *xi))) {
-            let x = map::position(&mesh.corners(cell), xi);
+            let x = map::position(&mesh.map(cell), xi);
             if fields.locator.find(x).is_none() {
                 (count, farthest) = (count + 1, fields.beside(x).map_or(farthest, |near| farthest.max(near.0)));
             }
@@ -244,7 +244,7 @@ impl Sampler {
         self.locator.overlapping(x.map(|x| x - reach), x.map(|x| x + reach), &mut near);
         near.sort_unstable();
         let found = near.into_iter().filter_map(|cell| {
-            let xi = map::parent(&self.given.mesh.corners(cell), x)?;
+            let xi = map::parent(&self.given.mesh.map(cell), x)?;
             let outside = xi.iter().fold(0.0, |outside: f64, xi| outside.max(-xi).max(xi - 1.0));
             (outside <= GAP).then_some((outside, cell, xi))
         });

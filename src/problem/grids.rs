@@ -89,11 +89,11 @@ fn worst_shape(present: &Present) -> f64 {
     let view = present.view;
     let solution = Solution::of_state(view.scheme, view.state, present.material);
     let shape = |cell: usize| {
-        let corners = view.mesh.corners(cell);
-        let middle = map::position(&corners, [0.5; 2]);
+        let map = view.mesh.map(cell);
+        let middle = map::position(&map, [0.5; 2]);
         let at: [[f64; 2]; 4] = std::array::from_fn(|k| {
             let there = solution.at(cell, map::CORNER_XI[k]);
-            let x = corners[k];
+            let x = map.corners[k];
             if solution.has_displacement() {
                 return [x[0] + there.displacement[0], x[1] + there.displacement[1]];
             }

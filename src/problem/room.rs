@@ -107,7 +107,7 @@ impl Scene {
         };
         let cells = member.iter().filter(|is| **is).count();
         let own = (0..mesh.cells.len()).filter(|&cell| member[cell]);
-        let area: f64 = own.map(|cell| map::area(&mesh.corners(cell))).sum();
+        let area: f64 = own.map(|cell| map::area(&mesh.map(cell))).sum();
         // A disk pattern has .64 and more of the points of a square lattice.
         let points = 0.64 * area / (spacing * spacing);
         let wanted = Wanted { cells, points: points / cells.max(1) as f64, own_points: true, own_shape: false };

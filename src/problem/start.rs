@@ -125,7 +125,7 @@ impl<'a> Start<'a> {
     /// F, v and u at a node of a cell.
     fn at(&self, cell: usize, node: usize) -> Result<([f64; 4], [f64; 2], [f64; 2])> {
         let Self { scene, mesh, .. } = self;
-        let x = mesh::map::position(&mesh.corners(cell), self.line.basis.node_2d(node));
+        let x = mesh::map::position(&mesh.map(cell), self.line.basis.node_2d(node));
         let (f, v) = match &self.exact {
             Some(exact) => (exact.deformation(x, scene.start), exact.velocity(x, scene.start)),
             None => {

@@ -36,7 +36,7 @@ impl Extent {
     fn span(&self, seen: &Seen, points: impl Iterator<Item = (usize, [f64; 2])>) -> f64 {
         let (solution, mut low, mut high) = (seen.solution(), f64::INFINITY, f64::NEG_INFINITY);
         for (cell, xi) in points {
-            let x = map::position(&seen.mesh.corners(cell), xi)[self.axis];
+            let x = map::position(&seen.mesh.map(cell), xi)[self.axis];
             let now = x + solution.at(cell, xi).displacement[self.axis];
             (low, high) = (low.min(now), high.max(now));
         }

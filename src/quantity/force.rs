@@ -67,21 +67,22 @@ impl Force {
     fn of_face(&self, seen: &Seen, cell: usize, face: usize, memory: &mut impl Iterator<Item = Vec<f64>>) -> f64 {
         let (scheme, solution, time) = (seen.scheme, seen.solution(), seen.state.time);
         let (block, lane) = scheme.operators.blocks.slot[cell];
-        let metric = scheme.operators.geometry.blocks[block].lane(lane);
-        let (normal, length, law) = (metric.normal(face), metric.length(face), solution.law(cell));
+        let (metric, law) = (scheme.operators.geometry.of(block), solution.law(cell));
         let medium = Medium::new(law.density(), law.shear_modulus(), scheme.operators.degree);
         let times_of_step = [TimeNode { time, weight: 1.0 }];
         let when = Moment { times: &times_of_step, dt: 0.0 };
-        let corners = seen.mesh.corners(cell);
-        let trace = |along: &f64| {
+        let map = seen.mesh.map(cell);
+        let trace = |(i, along): (usize, &f64)| {
+            let (normal, _) = metric.at_face_of(lane, face, i);
             let point = solution.at(cell, on_face(face, *along));
             let (f, t) = (point.deformation, times(point.response(law).piola, normal));
             Trace { f, v: point.velocity, t, c: law.speeds(f, normal) }
         };
         let basis = &solution.basis;
-        let inside: Vec<_> = basis.nodes.iter().map(trace).collect();
-        let place = |along: f64| map::position(&corners, on_face(face, along));
-        let points: Vec<_> = basis.nodes.iter().map(|s| FacePoint { x: place(*s), normal, medium }).collect();
+        let inside: Vec<_> = basis.nodes.iter().enumerate().map(trace).collect();
+        let place = |along: f64| map::position(&map, on_face(face, along));
+        let at = |(i, s): (usize, &f64)| FacePoint { x: place(*s), normal: metric.at_face_of(lane, face, i).0, medium };
+        let points: Vec<_> = basis.nodes.iter().enumerate().map(at).collect();
         let mut own: Vec<_> = points.iter().map(|_| memory.next().unwrap_or_default()).collect();
         let (condition, mut flux) = (&scheme.boundaries[self.group], vec![[0.0; 6]; points.len()]);
         let whole =
@@ -92,7 +93,9 @@ impl Force {
             }
         }
         // The flux of momentum is -t*.
-        basis.weights.iter().zip(flux).map(|(weight, flux)| -weight * length * flux[4 + self.axis]).sum()
+        let length = |i: usize| metric.at_face_of(lane, face, i).1;
+        let weights = basis.weights.iter().enumerate();
+        weights.zip(flux).map(|((i, weight), flux)| -weight * length(i) * flux[4 + self.axis]).sum()
     }
 }
 

@@ -170,12 +170,12 @@ impl Places {
 
     /// Reference coordinates of a place, m.
     pub fn position(mesh: &Mesh, place: &Place) -> [f64; 2] {
-        map::position(&mesh.corners(place.cell), place.xi)
+        map::position(&mesh.map(place.cell), place.xi)
     }
 
     /// The same, by 1e-9 of the cell towards its middle: the exact solution at an edge of the cell is the one on its side.
     pub fn inside(mesh: &Mesh, place: &Place) -> [f64; 2] {
-        map::position(&mesh.corners(place.cell), place.xi.map(|xi| xi + 1e-9 * (0.5 - xi)))
+        map::position(&mesh.map(place.cell), place.xi.map(|xi| xi + 1e-9 * (0.5 - xi)))
     }
 }
 

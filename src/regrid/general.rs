@@ -1,12 +1,14 @@
 //! The projection between any two grids: intersections of cells by clipping, quadrature on the pieces, inverse maps in both
-//! cells.
+//! cells. Curved cells are clipped as the quadrilaterals of their corners, and their fields are taken where the points of the
+//! quadrature are by their curved maps, inside or a little outside: uniform states and totals are kept, and at curved edges the
+//! projection is of order 2.
 
 use super::clip::Polygon;
 use super::nodal::{Nodal, Values, combine, gather, scatter, spread};
 use super::{Field, Grid, LARGEST_DIFFERENCE, Share, Taken, Transfer, integral, is_momentum};
 use crate::cloud::Locator;
 use crate::error::Error;
-use crate::mesh::map::{self, Corners};
+use crate::mesh::map::{self, CellMap, Corners, Map};
 use crate::quadrature::gauss_legendre;
 use crate::sum::{ExactSum, exact_sum};
 use rayon::prelude::*;
@@ -87,25 +89,25 @@ struct Sample {
 
 impl<const M: usize> Job<'_, M> {
     fn cell(&self, cell: usize, scratch: &mut Scratch, u: &mut [f64]) -> Result<Share, Error> {
-        let corners = self.new.mesh.corners(cell);
-        let area = map::area(&corners);
-        let mut share = self.sample(cell, &corners, area, scratch);
+        let map = self.new.mesh.map(cell);
+        let area = map::area(&map.corners);
+        let mut share = self.sample(cell, &map, area, scratch);
         let covered: f64 = share.taken.iter().map(|taken| taken.area).sum();
         let hole = (1.0 - covered / area).max(0.0);
-        let base = self.base(cell, &corners, &share.taken, hole)?;
+        let base = self.base(cell, &map, &share.taken, hole)?;
         // M^-1 int Phi_a (U_old - base) + base: a uniform state is exact for any quadrature, and the part that no old
         // cell covers gets the values of the base.
         let mut values = [[[0.0; 8]; M]; M];
         for sample in &scratch.samples {
             let (x, y) = (self.nodal.at(sample.xi[0]), self.nodal.at(sample.xi[1]));
-            let below = base.at(&self.nodal, map::position(&corners, sample.xi));
+            let below = base.at(&self.nodal, map::position(&map, sample.xi));
             let value: Values = std::array::from_fn(|k| sample.weight * (sample.value[k] - below[k]));
             spread(&value, &x, &y, &mut values);
         }
         for (i, j) in (0..M).flat_map(|i| (0..M).map(move |j| (i, j))) {
             let xi = self.field.basis.node_2d(i * M + j);
             let mass = super::mass(self.new.mesh, cell, self.field.basis, i * M + j);
-            let below = base.at(&self.nodal, map::position(&corners, xi));
+            let below = base.at(&self.nodal, map::position(&map, xi));
             (0..8).for_each(|k| values[i][j][k] = values[i][j][k] / mass + below[k]);
         }
         let scale = &self.field.scale[self.new.material[cell]];
@@ -121,22 +123,21 @@ impl<const M: usize> Job<'_, M> {
     }
 
     /// U_old at the points of the quadrature on all pieces of a new cell.
-    fn sample(&self, cell: usize, corners: &Corners, area: f64, scratch: &mut Scratch) -> Share {
+    fn sample(&self, cell: usize, map: &CellMap, area: f64, scratch: &mut Scratch) -> Share {
         let Scratch { candidates, samples } = scratch;
         samples.clear();
         candidates.clear();
         let bound =
-            |pick: fn(f64, f64) -> f64| [0, 1].map(|i| corners.iter().map(|x| x[i]).reduce(pick).unwrap_or(0.0));
+            |pick: fn(f64, f64) -> f64| [0, 1].map(|i| map.corners.iter().map(|x| x[i]).reduce(pick).unwrap_or(0.0));
         self.locator.overlapping(bound(f64::min), bound(f64::max), candidates);
         candidates.sort_unstable();
         // Relative to a corner, so that cells far from the origin lose no digits.
-        let origin = corners[0];
-        let shift = |corners: &Corners| corners.map(|x| [x[0] - origin[0], x[1] - origin[1]]);
-        let own = shift(corners);
+        let back = map.corners[0].map(|x| -x);
+        let own = map.moved(back);
         let mut share = Share::default();
         for &old in candidates.iter().filter(|&&old| self.old.material[old] == self.new.material[cell]) {
-            let other = shift(&self.old.mesh.corners(old));
-            let piece = Polygon::quad(own).clipped(&other);
+            let other = self.old.mesh.map(old).moved(back);
+            let piece = Polygon::quad(own.corners).clipped(&other.corners);
             let common = piece.area();
             if common <= NO_PIECE * area {
                 continue;
@@ -150,7 +151,7 @@ impl<const M: usize> Job<'_, M> {
         share
     }
 
-    fn sample_piece(&self, piece: &Polygon, cells: [&Corners; 2], old: usize, samples: &mut Vec<Sample>) {
+    fn sample_piece(&self, piece: &Polygon, cells: [&CellMap; 2], old: usize, samples: &mut Vec<Sample>) {
         let stride = self.field.components * M * M;
         let there = gather::<M>(&self.field.u[stride * old..stride * (old + 1)], |a| a);
         let (nodes, weights) = if cells.iter().all(|cell| is_affine(cell)) { &self.exact } else { &self.fine };
@@ -171,14 +172,14 @@ impl<const M: usize> Job<'_, M> {
 
     /// The base of the projection: the mean over the pieces. If a part of the cell is not covered, it is the polynomial
     /// of the largest piece, or the mean of the nearest cell.
-    fn base(&self, cell: usize, corners: &Corners, taken: &[Taken], hole: f64) -> Result<Base<M>, Error> {
+    fn base(&self, cell: usize, map: &CellMap, taken: &[Taken], hole: f64) -> Result<Base<M>, Error> {
         let stride = self.field.components * M * M;
         let unknowns = |old: usize| &self.field.u[stride * old..stride * (old + 1)];
         if hole > COVERED && hole < EXTENDED {
             let largest = taken.iter().max_by(|a, b| a.area.total_cmp(&b.area).then(b.old.cmp(&a.old)));
             if let Some(largest) = largest {
-                let corners = self.old.mesh.corners(largest.old);
-                return Ok(Base::Polynomial(corners, Box::new(gather::<M>(unknowns(largest.old), |a| a))));
+                let map = self.old.mesh.map(largest.old);
+                return Ok(Base::Polynomial(map, Box::new(gather::<M>(unknowns(largest.old), |a| a))));
             }
         }
         let area: f64 = taken.iter().map(|taken| taken.area).sum();
@@ -187,21 +188,21 @@ impl<const M: usize> Job<'_, M> {
                 taken.iter().map(|taken| taken.total[k]).sum::<f64>() / area
             })));
         }
-        let near = self.nearest(corners, self.new.material[cell]).ok_or_else(|| {
+        let near = self.nearest(map, self.new.material[cell]).ok_or_else(|| {
             let group = &self.new.mesh.groups[self.new.mesh.cell_group[cell]];
             let what =
                 format!("cell {} of group {group} has a material that the old grid lacks", self.new.mesh.number(cell));
             Error::input(what, "give a mesh with the groups of the old one")
         })?;
-        let area = map::area(&self.old.mesh.corners(near));
+        let area = map::area(&self.old.mesh.map(near));
         Ok(Base::Mean(integral(self.old, self.field, near, unknowns(near)).map(|total| total / area)))
     }
 
     /// The old cell of a material with the nearest centre. (Only for new cells that no old cell touches; there are few.)
-    fn nearest(&self, corners: &Corners, material: usize) -> Option<usize> {
-        let centre = map::position(corners, [0.5; 2]);
+    fn nearest(&self, map: &CellMap, material: usize) -> Option<usize> {
+        let centre = map::position(map, [0.5; 2]);
         let distance = |old: usize| {
-            let other = map::position(&self.old.mesh.corners(old), [0.5; 2]);
+            let other = map::position(&self.old.mesh.map(old), [0.5; 2]);
             (other[0] - centre[0]).hypot(other[1] - centre[1])
         };
         let cells = (0..self.old.mesh.cells.len()).filter(|&old| self.old.material[old] == material);
@@ -212,8 +213,8 @@ impl<const M: usize> Job<'_, M> {
 /// The base of the projection.
 enum Base<const M: usize> {
     Mean(Values),
-    /// The polynomial of a cell with these corners, continued outside the cell.
-    Polynomial(Corners, Box<[[Values; M]; M]>),
+    /// The polynomial of a cell with this map, continued outside the cell.
+    Polynomial(CellMap, Box<[[Values; M]; M]>),
 }
 
 impl<const M: usize> Base<M> {
@@ -221,9 +222,9 @@ impl<const M: usize> Base<M> {
     fn at(&self, nodal: &Nodal<M>, x: [f64; 2]) -> Values {
         match self {
             Base::Mean(mean) => *mean,
-            Base::Polynomial(corners, values) => {
+            Base::Polynomial(map, values) => {
                 // Far outside, beyond the fold of the map, the nearest corner is used instead.
-                let xi = map::parent(corners, x).unwrap_or([0.5; 2]).map(|xi| xi.clamp(-1.0, 2.0));
+                let xi = map::parent(map, x).unwrap_or([0.5; 2]).map(|xi| xi.clamp(-1.0, 2.0));
                 combine(values, &nodal.at(xi[0]), &nodal.at(xi[1]))
             }
         }
@@ -231,18 +232,18 @@ impl<const M: usize> Base<M> {
 }
 
 /// Whether a cell is a parallelogram, up to rounding.
-fn is_affine(corners: &Corners) -> bool {
-    let [a, b, c, d] = corners;
+fn is_affine(cell: &CellMap) -> bool {
+    let [a, b, c, d]: &Corners = &cell.corners;
     let size = (0..2).map(|i| (c[i] - a[i]).abs()).fold(0.0, f64::max);
-    (0..2).all(|i| (a[i] - b[i] + c[i] - d[i]).abs() <= 1e-13 * size)
+    cell.bulge.is_none() && (0..2).all(|i| (a[i] - b[i] + c[i] - d[i]).abs() <= 1e-13 * size)
 }
 
 /// Parent coordinates of x by Newton's method. The first guess is exact for a parallelogram.
 #[inline(always)]
-fn improved(corners: &Corners, x: [f64; 2], mut xi: [f64; 2]) -> [f64; 2] {
+fn improved(cell: &impl Map, x: [f64; 2], mut xi: [f64; 2]) -> [f64; 2] {
     for _ in 0..12 {
-        let at = map::position(corners, xi);
-        let k = map::jacobian(corners, xi);
+        let at = map::position(cell, xi);
+        let k = map::jacobian(cell, xi);
         let (det, rest) = (map::determinant(&k), [x[0] - at[0], x[1] - at[1]]);
         let step = [(k[1][1] * rest[0] - k[0][1] * rest[1]) / det, (k[0][0] * rest[1] - k[1][0] * rest[0]) / det];
         xi = [xi[0] + step[0], xi[1] + step[1]];
@@ -290,7 +291,7 @@ pub(super) fn settle(old: &Grid, new: &Grid, field: &Field, shares: &[Share], ou
             }
         }
     });
-    if out.uncovered != [0.0; 2] {
+    if out.uncovered != [0.0; 2] || [old, new].iter().any(|grid| !grid.mesh.bulges.is_empty()) {
         restore(old, new, field, out);
     }
     Ok(())
@@ -321,7 +322,7 @@ fn restore(old: &Grid, new: &Grid, field: &Field, out: &mut Transfer) {
         for cell in (0..grid.material.len()).filter(|&cell| grid.material[cell] == material && of(cell)) {
             let own = integral(grid, field, cell, &u[stride * cell..stride * (cell + 1)]);
             sum.iter_mut().zip(own).for_each(|(sum, own)| sum.add(own));
-            area.add(map::area(&grid.mesh.corners(cell)));
+            area.add(map::area(&grid.mesh.map(cell)));
         }
         (sum.map(|sum| sum.value()), area.value())
     };

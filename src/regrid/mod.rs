@@ -20,7 +20,8 @@ pub use tensor::TensorGrid;
 
 use crate::basis::Lagrange;
 use crate::error::Error;
-use crate::mesh::{Mesh, map};
+use crate::mesh::Mesh;
+use crate::mesh::map::{self, CellMap};
 use crate::state::UNKNOWNS;
 use crate::step::{Relax, Scheme};
 use crate::sum::exact_sum;
@@ -91,9 +92,13 @@ struct Taken {
     total: [f64; 8],
 }
 
-/// For each new cell the old cell of the same material whose corners are the same to the bit, in the same order.
+/// For each new cell the old cell of the same material whose corners and edges are the same to the bit, in the same order.
 pub fn same_cells(old: &Grid, new: &Grid) -> Vec<Option<usize>> {
-    let key = |grid: &Grid, cell: usize| (grid.mesh.corners(cell).map(|x| x.map(f64::to_bits)), grid.material[cell]);
+    let key = |grid: &Grid, cell: usize| {
+        let CellMap { corners, bulge } = grid.mesh.map(cell);
+        let bulge = bulge.map(|bulge| bulge.map(|d| d.map(f64::to_bits)));
+        (corners.map(|x| x.map(f64::to_bits)), bulge, grid.material[cell])
+    };
     let by_key: HashMap<_, usize> = (0..old.mesh.cells.len()).map(|cell| (key(old, cell), cell)).collect();
     (0..new.mesh.cells.len()).into_par_iter().map(|cell| by_key.get(&key(new, cell)).copied()).collect()
 }
@@ -150,7 +155,7 @@ pub fn curl_free(scheme: &Scheme, components: usize, same: &[Option<usize>], u: 
 
 /// w_a J_a of a cell.
 fn mass(mesh: &Mesh, cell: usize, basis: &Lagrange, a: usize) -> f64 {
-    basis.weight_2d(a) * map::determinant(&map::jacobian(&mesh.corners(cell), basis.node_2d(a)))
+    basis.weight_2d(a) * map::determinant(&map::jacobian(&mesh.map(cell), basis.node_2d(a)))
 }
 
 /// int U dX of a cell, by its own quadrature.

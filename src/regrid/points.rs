@@ -155,7 +155,7 @@ fn stay(old: &Grid, cloud: &Cloud, new: &Grid, same: &[Option<usize>]) -> (Vec<V
     }
     let locator = Locator::new(new.mesh);
     let find = |&(cell, point): &(usize, usize)| {
-        let found = locator.find(map::position(&old.mesh.corners(cell), cloud.xi[point]))?;
+        let found = locator.find(map::position(&old.mesh.map(cell), cloud.xi[point]))?;
         // A point on an edge between two materials stays in its own material: in the lowest cell of that material there.
         (new.material[found.0] == old.material[cell]).then_some((found, point))
     };
@@ -216,8 +216,9 @@ fn enrich(located: &mut [Vec<Located>], changed: &[bool], new: &Grid, required: 
         chosen.dedup();
         let thinned: Vec<Located> = chosen.into_iter().map(|k| own[k]).collect();
         let cloud = Cloud { first: vec![0, thinned.len()], xi: thinned.iter().map(|point_at| point_at.xi).collect() };
-        let corners = new.mesh.corners(cell);
-        let one = Mesh { nodes: corners.to_vec(), cells: vec![[0, 1, 2, 3]], ..Mesh::default() };
+        let map = new.mesh.map(cell);
+        let bulges = map.bulge.into_iter().collect();
+        let one = Mesh { nodes: map.corners.to_vec(), cells: vec![[0, 1, 2, 3]], bulges, ..Mesh::default() };
         if carries(&certify(&one, required.line, Sampling::Cloud(&cloud))?[0], required) {
             located[cell] = thinned;
         }
@@ -231,10 +232,9 @@ fn sources(old: &Grid, cloud: &Cloud, new: &Grid, located: &[Vec<Located>]) -> R
     let asked = vec![located.iter().any(is_new); old.material.iter().max().map_or(0, |last| last + 1)];
     let trees = trees(old.mesh, cloud, old.material, &asked);
     let of = |cell: usize| -> Result<Vec<usize>, Error> {
-        let corners = new.mesh.corners(cell);
+        let map = new.mesh.map(cell);
         let source = |point_at: &Located| {
-            let near =
-                || trees.get(new.material[cell])?.as_ref()?.nearest_neighbor(map::position(&corners, point_at.xi));
+            let near = || trees.get(new.material[cell])?.as_ref()?.nearest_neighbor(map::position(&map, point_at.xi));
             point_at.old.or_else(|| near().map(|point| point.data)).ok_or_else(|| {
                 let what = format!("cell {} has a material that no old point has", new.mesh.number(cell));
                 Error::input(what, "give a mesh with the groups of the old one")
@@ -297,7 +297,7 @@ mod tests {
     }
 
     fn positions(mesh: &Mesh, cloud: &Cloud) -> Vec<[f64; 2]> {
-        let of = |cell: usize| cloud.of(cell).iter().map(move |&xi| map::position(&mesh.corners(cell), xi));
+        let of = |cell: usize| cloud.of(cell).iter().map(move |&xi| map::position(&mesh.map(cell), xi));
         (0..mesh.cells.len()).flat_map(of).collect()
     }
 

@@ -27,7 +27,7 @@ impl TensorGrid {
     pub fn of(mesh: &Mesh) -> Option<Self> {
         let lines = [0, 1].map(|axis| lines(mesh, axis));
         let [nx, ny] = [lines[0].len().checked_sub(1)?, lines[1].len().checked_sub(1)?];
-        if nx.checked_mul(ny)? != mesh.cells.len() {
+        if nx.checked_mul(ny)? != mesh.cells.len() || mesh.curved_cells() > 0 {
             return None;
         }
         let slack = [0, 1].map(|axis| slack(&lines[axis]));
@@ -227,7 +227,7 @@ impl<const M: usize> Job<'_, M> {
             }
         }
         scatter::<M>(&values, |a| self.to.node::<M>(cell, a), u);
-        share.times(map::area(&self.new.mesh.corners(cell)))
+        share.times(map::area(&self.new.mesh.map(cell)))
     }
 }
 

@@ -24,7 +24,7 @@ fn sampled(mesh: &Mesh, basis: &Lagrange, f: impl Fn([f64; 2]) -> [f64; 6]) -> V
     let mut u = vec![0.0; mesh.cells.len() * 6 * n];
     for (cell, u) in u.chunks_exact_mut(6 * n).enumerate() {
         for a in 0..n {
-            let values = f(map::position(&mesh.corners(cell), basis.node_2d(a)));
+            let values = f(map::position(&mesh.map(cell), basis.node_2d(a)));
             (0..6).for_each(|k| u[k * n + a] = values[k]);
         }
     }
@@ -201,7 +201,7 @@ fn where_grids_do_not_cover_the_same_region_means_and_momentum_are_restored() {
     // Chords of the arc: 8 against 5.
     assert!(out.uncovered[0] > 1e-3 && out.uncovered[0] < 5e-3, "{:?}", out.uncovered);
     let ((a, _), (b, _)) = (totals(&old, &basis, &u), totals(&new, &basis, &out.u));
-    let area = |mesh: &Mesh| (0..mesh.cells.len()).map(|c| map::area(&mesh.corners(c))).sum::<f64>();
+    let area = |mesh: &Mesh| (0..mesh.cells.len()).map(|c| map::area(&mesh.map(c))).sum::<f64>();
     for k in 0..6 {
         let factor = if k < 4 { area(&old) / area(&new) } else { 1.0 };
         assert!((a[k] - factor * b[k]).abs() < 1e-12 * if k < 4 { 1.0 } else { 100.0 });
@@ -232,7 +232,7 @@ fn a_cell_takes_nothing_from_another_material() {
     // Two materials, whose border x = 1/2 is a line of both grids.
     let (old, new) = (rectangle([1.0, 1.0], [4, 4]).unwrap(), rectangle([1.0, 1.0], [6, 5]).unwrap());
     let half = |mesh: &Mesh| -> Vec<usize> {
-        (0..mesh.cells.len()).map(|c| usize::from(map::position(&mesh.corners(c), [0.5; 2])[0] > 0.5)).collect()
+        (0..mesh.cells.len()).map(|c| usize::from(map::position(&mesh.map(c), [0.5; 2])[0] > 0.5)).collect()
     };
     let (a, b) = (half(&old), half(&new));
     let basis = Lagrange::new(2);

@@ -6,6 +6,7 @@
 //! work done so far, and [`ROUNDING`] int rho0 c_p^2 dX: what is below is noise of the energy's own rounding.
 
 use crate::error::Result;
+use crate::mesh::map;
 use crate::operators::Blocks;
 use crate::state::State;
 use crate::step::{Balance, EnergyMade, Scheme, Totals, Work};
@@ -171,10 +172,7 @@ fn stiffness(scheme: &Scheme) -> f64 {
     let Blocks { material, count, .. } = &scheme.operators.blocks;
     let moduli: Vec<f64> =
         scheme.laws.iter().map(|law| law.density() * law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0].powi(2)).collect();
-    let area = |block: usize, lane: usize| {
-        let [a, b, c, d] = scheme.operators.geometry.corners_of(block, lane);
-        0.5 * ((c[0] - a[0]) * (d[1] - b[1]) - (d[0] - b[0]) * (c[1] - a[1])).abs()
-    };
+    let area = |block: usize, lane: usize| map::area(&scheme.operators.geometry.map_of(block, lane)).abs();
     let of_block =
         |block: usize| moduli[material[block]] * (0..count[block]).map(|lane| area(block, lane)).sum::<f64>();
     exact_sum((0..count.len()).map(of_block))

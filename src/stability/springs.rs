@@ -161,9 +161,9 @@ impl<'a> Faces<'a> {
             return None;
         };
         let (there, other) = (operators.blocks.cells[across.face / FACES][across.lane], across.face % FACES);
-        let normal = operators.geometry.blocks[block].lane(lane).normal(face);
         let (mut own, mut beyond) = (vec![], vec![]);
         for point in 0..operators.line.m {
+            let (normal, _) = operators.geometry.of(block).at_face_of(lane, face, point);
             let opposite = Self::opposite(&across, point, operators.line.m);
             let moduli = [self.modulus(cell, face, point, normal), self.modulus(there, other, opposite, normal)];
             let [stiffness, _] = hold([-1.0, 0.0], moduli, 1.0);

@@ -2,7 +2,7 @@
 
 use super::block::Block;
 use crate::lane::{F8, LANES};
-use crate::mesh::map;
+use crate::mesh::map::{self, CellMap};
 use crate::source::Varies;
 use crate::tensor::AXES;
 
@@ -27,8 +27,8 @@ pub(super) struct Acceleration<'a> {
     block: Block<'a>,
     /// What it varies with.
     pub varies: Varies,
-    /// Corners of the cells; of none where no source asks for the place.
-    corners: [[[f64; AXES]; 4]; LANES],
+    /// The maps of the cells; of none where no source asks for the place.
+    maps: [Option<CellMap>; LANES],
     /// Cells that are evaluated; the others have what the first one has.
     evaluated: usize,
 }
@@ -38,22 +38,22 @@ impl<'a> Acceleration<'a> {
     pub fn of(block: &Block<'a>) -> Self {
         let sources = block.scheme.sources.iter();
         let varies = sources.fold(Varies::default(), |all, source| all.or(source.varies()));
-        let mut corners = [[[0.0; AXES]; 4]; LANES];
+        let mut maps = [None; LANES];
         if varies.place {
-            for (lane, corners) in corners.iter_mut().enumerate() {
-                *corners = block.scheme.operators.geometry.corners_of(block.number, lane);
+            for (lane, map) in maps.iter_mut().enumerate() {
+                *map = Some(block.scheme.operators.geometry.map_of(block.number, lane));
             }
         }
         let evaluated = if varies.place || varies.velocity { block.cells() } else { 1 };
-        Self { block: *block, varies, corners, evaluated }
+        Self { block: *block, varies, maps, evaluated }
     }
 
     /// X at parent coordinates, by lane; 0 where no source asks for it.
     pub fn places(&self, xi: impl Fn(usize) -> [f64; AXES]) -> Places {
         let mut places = [[0.0; AXES]; LANES];
-        if self.varies.place {
-            for (lane, place) in places.iter_mut().enumerate() {
-                *place = map::position(&self.corners[lane], xi(lane));
+        for (lane, (place, map)) in places.iter_mut().zip(&self.maps).enumerate() {
+            if let Some(map) = map {
+                *place = map::position(map, xi(lane));
             }
         }
         places

@@ -134,7 +134,7 @@ impl Block<'_> {
         let u = &self.unknowns(state)[UNKNOWNS * n..];
         for (face, neighbours) in operators.blocks.neighbours[self.number].iter().enumerate() {
             for lane in (0..LANES).filter(|lane| matches!(neighbours[*lane], Neighbour::Boundary(_))) {
-                let corners = operators.geometry.corners_of(self.number, lane);
+                let corners = operators.geometry.map_of(self.number, lane);
                 for point in 0..m {
                     let node = |j: usize| if face < 2 { j * m + point } else { point * m + j };
                     let moved = |axis: usize| -> f64 {
@@ -313,7 +313,7 @@ fn at_node(scheme: &Scheme, state: &State, [block, lane]: [usize; 2], a: usize) 
 fn each_node(scheme: &Scheme, body: &[[usize; 2]], mut visit: impl FnMut([usize; 2], usize, [f64; 2], f64, f64)) {
     let (operators, line) = (&scheme.operators, &scheme.operators.line);
     for &[block, lane] in body {
-        let corners = operators.geometry.corners_of(block, lane);
+        let corners = operators.geometry.map_of(block, lane);
         let density = scheme.laws[operators.blocks.material[block]].density();
         for (a, mass) in operators.geometry.masses(line, block, lane).enumerate() {
             visit([block, lane], a, map::position(&corners, line.basis.node_2d(a)), mass, density);

@@ -18,7 +18,7 @@ use super::{Method, Part, Phase, Scratch};
 use crate::built;
 use crate::lane::{Coefficient, F8, Lanes, prefetch, ticks};
 use crate::material::Material;
-use crate::operators::{PointMatrices, Share, with_nodes};
+use crate::operators::{PointMatrices, Share, with_nodes, with_terms};
 use crate::riemann::Looks;
 use crate::state::{State, UNKNOWNS};
 use crate::tensor::DEFORMATION;
@@ -160,7 +160,7 @@ impl Begin<'_> {
     fn volume_term(&mut self) {
         let (block, kernel, line) = (self.block, self.block.scheme.kernel, &self.block.scheme.operators.line);
         let (metric, arrays, rate) = (block.metric(), &mut self.scratch.nodes, &mut *self.rate);
-        with_nodes!(line.m, M => kernel.run(volume::Volume::<'_, M> { line, metric, arrays, rate }));
+        with_terms!(metric, metric => with_nodes!(line.m, M => kernel.run(volume::Volume::<'_, M, _> { line, metric, arrays, rate })));
         let Scratch { nodes, phases, .. } = &mut *self.scratch;
         if built::SOURCES && !block.scheme.sources.is_empty() {
             let start = phases.start();

@@ -3,7 +3,7 @@
 use super::volume::Masses;
 use super::{Law, Scheme, Stage};
 use crate::lane::F8;
-use crate::operators::{Metric, Points, with_nodes};
+use crate::operators::{BlockMetric, Points, with_nodes};
 use crate::riemann::Medium;
 use crate::state::State;
 
@@ -21,8 +21,8 @@ pub(super) struct Block<'a> {
 impl<'a> Block<'a> {
     /// Its metric terms.
     #[inline]
-    pub fn metric(&self) -> &'a Metric<F8> {
-        &self.scheme.operators.geometry.blocks[self.number]
+    pub fn metric(&self) -> BlockMetric<'a> {
+        self.scheme.operators.geometry.of(self.number)
     }
 
     /// The number of its material.

@@ -35,7 +35,7 @@ impl BlockEnergy<'_> {
     /// Finds it.
     pub fn find(self) -> F8 {
         let operators = &self.scheme.operators;
-        let (line, metric) = (&operators.line, &operators.geometry.blocks[self.block]);
+        let (line, metric) = (&operators.line, operators.geometry.of(self.block));
         let masses = &mut self.scratch.nodes.masses;
         with_nodes!(line.m, M => { self.scheme.kernel.run(Masses::<'_, M> { line, metric, masses }); });
         let law = &self.scheme.laws[self.scheme.operators.blocks.material[self.block]];

@@ -121,7 +121,7 @@ impl Scheme {
             let count = self.boundaries[group].memory().len();
             let (end, along) = ((face % 2) as f64, basis.nodes[point]);
             let xi = if face < 2 { [end, along] } else { [along, end] };
-            let x = map::position(&geometry.corners_of(block, lane), xi);
+            let x = map::position(&geometry.map_of(block, lane), xi);
             if count > 0 {
                 out.push(PointWithMemory { group, x, numbers: first..first + count });
             }

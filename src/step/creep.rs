@@ -194,11 +194,11 @@ impl Block<'_> {
         springs: Pulling,
         flux: impl FnOnce(&Trace<f64>) -> [f64; UNKNOWNS],
     ) -> [f64; UNKNOWNS] {
-        let (metric, at) = (self.metric().lane(lane), face * self.scheme.operators.line.m + point);
+        let at = face * self.scheme.operators.line.m + point;
         let Neighbour::Boundary(group) = self.scheme.operators.blocks.neighbours[self.number][face][lane] else {
             return flux(inside);
         };
-        let (normal, length) = (metric.normal(face), metric.length(face));
+        let (normal, length) = self.metric().at_face_of(lane, face, point);
         let stiffness = self.scheme.spring_at(group, self.material()) / length;
         if how == GivesBack::Along {
             // The mean of F and its image turns nowhere, and the pull is shared with the image. What the condition adds to the rows of F for the
@@ -231,9 +231,9 @@ impl Block<'_> {
         springs: Pulling,
         flux: &mut [f64; UNKNOWNS],
     ) {
-        let (metric, at) = (self.metric().lane(lane), face * self.scheme.operators.line.m + point);
-        let (normal, scheme) = (metric.normal(face), self.scheme);
-        let stiffness = self.spring_between(material) / metric.length(face);
+        let (scheme, at) = (self.scheme, face * self.scheme.operators.line.m + point);
+        let (normal, length) = self.metric().at_face_of(lane, face, point);
+        let stiffness = self.spring_between(material) / length;
         if stiffness == 0.0 {
             return;
         }

@@ -1,9 +1,10 @@
 //! Pi of eight cells that differ, by [`Curl`]: F <- F - theta W^-1 J K^T Z K J^T F.
 
-use super::volume::{cofactors, row, square};
+use super::volume::{row, square};
 use crate::lane::{F8, Lanes};
 use crate::operators::curl_core::{Curl, functionals, numbers};
-use crate::operators::{Line, Metric, determinant};
+use crate::operators::curved::CurvedBlock;
+use crate::operators::{BlockMetric, Cofactors, Line, NodeMetric, determinant};
 
 /// Memory of the projection.
 pub struct Arrays<'a> {
@@ -19,7 +20,7 @@ pub struct Cells<'a> {
     /// The 1D tables.
     pub line: &'a Line,
     /// Its metric terms.
-    pub metric: &'a Metric<F8>,
+    pub metric: BlockMetric<'a>,
     /// K.
     pub curl: &'a Curl,
     /// Z, packed.
@@ -29,17 +30,38 @@ pub struct Cells<'a> {
 /// Numbers at the nodes.
 type Nodes<L, const M: usize> = [[L; M]; M];
 
-/// dX/dxi_1 at the nodes of xi2, dX/dxi_2 at those of xi1.
-#[inline(always)]
-fn tangents<L: Lanes, const M: usize>(line: &Line, metric: &Metric<L>) -> [[[L; 2]; M]; 2] {
-    // J dxi_1/dX is dX/dxi_2 turned by a quarter, J dxi_2/dX so is -dX/dxi_1.
-    let [one, two] = cofactors::<L, M>(line, metric);
-    let mut out = [[[L::zero(); 2]; M]; 2];
-    for k in 0..M {
-        out[0][k] = [two[k][1], -two[k][0]];
-        out[1][k] = [-one[k][1], one[k][0]];
+/// dX/dxi_1 and dX/dxi_2 at the nodes.
+#[derive(Clone, Copy)]
+struct Tangents<'a, L, const M: usize> {
+    /// Of straight cells: the first by the nodes of xi2, the second by those of xi1.
+    straight: [[[L; 2]; M]; 2],
+    curved: Option<CurvedBlock<'a>>,
+}
+
+impl<'a, L: Lanes, const M: usize> Tangents<'a, L, M> {
+    #[inline(always)]
+    fn new(line: &Line, metric: BlockMetric<'a>) -> Self {
+        // J dxi_1/dX is dX/dxi_2 turned by a quarter, J dxi_2/dX so is -dX/dxi_1.
+        let [one, two] = metric.straight.cofactors::<L, M>(line);
+        let mut straight = [[[L::zero(); 2]; M]; 2];
+        for k in 0..M {
+            straight[0][k] = [two[k][1], -two[k][0]];
+            straight[1][k] = [-one[k][1], one[k][0]];
+        }
+        Self { straight, curved: metric.curved }
     }
-    out
+
+    /// Those at node (i, j).
+    #[inline(always)]
+    fn at(&self, i: usize, j: usize) -> [[L; 2]; 2] {
+        match self.curved {
+            None => [self.straight[0][j], self.straight[1][i]],
+            Some(curved) => {
+                let (one, two): ([L; 2], [L; 2]) = (curved.one(i, j), curved.two(i, j));
+                [[two[1], -two[0]], [-one[1], one[0]]]
+            }
+        }
+    }
 }
 
 impl Cells<'_> {
@@ -47,7 +69,7 @@ impl Cells<'_> {
     #[inline(always)]
     pub fn project<L: Lanes, const M: usize>(&self, theta: L, arrays: Arrays, u: &mut [F8]) {
         let n = M * M;
-        let tangents = tangents::<L, M>(self.line, &self.metric.load::<L>());
+        let tangents = Tangents::<L, M>::new(self.line, self.metric);
         let (moments, slopes) = (square::<M>(&self.curl.moments), square::<M>(&self.curl.slopes));
         let values = &mut arrays.weighted.as_chunks_mut::<2>().0[..functionals(M)];
         let results = &mut arrays.coefficients.as_chunks_mut::<2>().0[..functionals(M)];
@@ -62,7 +84,7 @@ impl Cells<'_> {
             let (one, two) = f.split_at_mut(n);
             for i in 0..M {
                 for j in 0..M {
-                    let (a, [x1, x2]) = (i * M + j, [tangents[0][j], tangents[1][i]]);
+                    let (a, [x1, x2]) = (i * M + j, tangents.at(i, j));
                     let fields = [&mut one[a], &mut two[a]];
                     for (axis, field) in fields.into_iter().enumerate() {
                         let sum = x1[axis].mul_add(h[0][i][j], x2[axis] * h[1][i][j]);
@@ -75,12 +97,13 @@ impl Cells<'_> {
 
     /// -theta / (w_a J_a).
     #[inline(always)]
-    fn factors<L: Lanes, const M: usize>(&self, theta: L, tangents: &[[[L; 2]; M]; 2]) -> Nodes<L, M> {
+    fn factors<L: Lanes, const M: usize>(&self, theta: L, tangents: &Tangents<L, M>) -> Nodes<L, M> {
         let weights = row::<M>(&self.line.basis.weights);
         let mut out = [[L::zero(); M]; M];
         for i in 0..M {
             for j in 0..M {
-                let mass = L::splat(-weights[i] * weights[j]) * determinant(tangents[0][j], tangents[1][i]);
+                let [x1, x2] = tangents.at(i, j);
+                let mass = L::splat(-weights[i] * weights[j]) * determinant(x1, x2);
                 out[i][j] = theta / mass;
             }
         }
@@ -90,13 +113,13 @@ impl Cells<'_> {
 
 /// g_k = F_a dX_a/dxi_k of a row of F.
 #[inline(always)]
-fn parent<L: Lanes, const M: usize>(tangents: &[[[L; 2]; M]; 2], f: &[F8]) -> [Nodes<L, M>; 2] {
+fn parent<L: Lanes, const M: usize>(tangents: &Tangents<L, M>, f: &[F8]) -> [Nodes<L, M>; 2] {
     let (one, two) = f.split_at(M * M);
     let mut g = [[[L::zero(); M]; M]; 2];
     for i in 0..M {
         for j in 0..M {
             let (one, two) = (L::load(&one[i * M + j]), L::load(&two[i * M + j]));
-            for (g, x) in g.iter_mut().zip([tangents[0][j], tangents[1][i]]) {
+            for (g, x) in g.iter_mut().zip(tangents.at(i, j)) {
                 g[i][j] = one.mul_add(x[0], two * x[1]);
             }
         }

@@ -252,7 +252,7 @@ impl Scheme {
         let (operators, n) = (&self.operators, self.operators.nodes());
         let at = (block * state.components + UNKNOWNS) * n + a;
         state.has_displacement().then(|| {
-            let x = map::position(&operators.geometry.corners_of(block, lane), operators.line.basis.node_2d(a));
+            let x = map::position(&operators.geometry.map_of(block, lane), operators.line.basis.node_2d(a));
             [x[0] + state.u[at].0[lane], x[1] + state.u[at + n].0[lane]]
         })
     }
@@ -267,8 +267,7 @@ impl Scheme {
     pub(super) fn gradient(&self, u: &[F8], block: usize, lane: usize, a: usize, component: usize) -> [f64; 2] {
         let (line, n) = (&self.operators.line, self.operators.nodes());
         let (m, i, j) = (line.m, a / line.m, a % line.m);
-        let metric = self.operators.geometry.blocks[block].lane(lane);
-        let (one, two) = (metric.cofactor1(line.basis.nodes[i]), metric.cofactor2(line.basis.nodes[j]));
+        let [one, two] = self.operators.geometry.of(block).at_node_of(line, lane, i, j);
         let at = |node: usize| u[component * n + node].0[lane];
         let along1: f64 = (0..m).map(|k| line.slope[i * m + k] * at(k * m + j)).sum();
         let along2: f64 = (0..m).map(|k| line.slope[j * m + k] * at(i * m + k)).sum();

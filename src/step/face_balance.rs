@@ -46,16 +46,16 @@ impl FaceBalance<'_, '_> {
     #[inline(always)]
     fn with<L: Lanes, R: Riemann, const W: usize>(self, riemann: &R) {
         let Self { block, sides, pull, balance } = self;
-        let (scheme, metric, face) = (block.scheme, block.metric().load::<L>(), sides.face);
+        let (scheme, metric, face) = (block.scheme, block.metric(), sides.face);
         let neighbours = &scheme.operators.blocks.neighbours[block.number][face];
         let factor = block.factor();
-        let normal = metric.normal(face);
         let mut medium = block.medium().splat::<L>();
         if R::LOOKS == Looks::Displacement {
             medium.turn = turn::<L, _, W>(sides.own.as_chunks::<W>().0, sides.other, block.turning());
         }
         let weights = &scheme.operators.line.basis.weights[..scheme.operators.line.m];
         for (point, (own, weight)) in sides.own.as_chunks::<W>().0.iter().zip(weights).enumerate() {
+            let (normal, length) = metric.at_face::<L>(face, point);
             let beyond = turned::<L, R, W>(sides.other.load::<L, W>(point));
             let minus = trace_of::<L, R, W>(&load_array::<L, W>(own));
             let plus = trace_of::<L, R, W>(&beyond);
@@ -66,11 +66,11 @@ impl FaceBalance<'_, '_> {
             if let Some(pull) = pull {
                 let at = face * scheme.operators.line.m + point;
                 store_array(
-                    pull.meter(at, riemann, [&minus, &plus], (normal, metric.length(face)), &medium, &mut flux),
+                    pull.meter(at, riemann, [&minus, &plus], (normal, length), &medium, &mut flux),
                     &mut pulled,
                 );
             }
-            (metric.length(face) * L::splat(*weight * factor)).store(&mut scale);
+            (length * L::splat(*weight * factor)).store(&mut scale);
             for (lane, neighbour) in neighbours.iter().enumerate() {
                 match neighbour {
                     // What a condition loses is booked with its work; it has no jumps, and no flux that means anything.

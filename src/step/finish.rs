@@ -19,7 +19,7 @@ use super::{Part, Phase, Scratch, Speeds, Survey, across, curl, curl_core, flux}
 use crate::built;
 use crate::lane::{F8, Lanes, Work};
 use crate::operators::curl_free::Relax;
-use crate::operators::with_nodes;
+use crate::operators::{with_nodes, with_terms};
 use crate::riemann::Looks;
 use crate::state::{State, UNKNOWNS};
 use crate::tensor::DEFORMATION;
@@ -103,7 +103,9 @@ impl Finish<'_> {
         let (metric, nodes) = (block.metric(), &*nodes);
         let held = (block.scheme.flux.looks() == Looks::Displacement).then_some(&nodes.held[..]);
         let lift = &nodes.lift[..];
-        with_nodes!(line.m, M => kernel.run(Lift::<'_, M> { line, metric, lift, held, rate: self.rate }));
+        with_terms!(metric, metric => with_nodes!(line.m, M => {
+            kernel.run(Lift::<'_, M, _> { line, metric, lift, held, rate: self.rate });
+        }));
     }
 
     /// U^(n+1) = U^n + dt sum_s b_s k_s (13).
@@ -190,7 +192,7 @@ impl<const M: usize> Work for Project<'_, '_, M> {
         let nodes = &mut scratch.nodes;
         let masses = Masses::<'_, M> { line: &operators.line, metric, masses: &mut nodes.masses };
         let arrays = curl_core::Arrays { weighted: &mut nodes.weighted, coefficients: &mut nodes.coefficients };
-        let factor = L::splat(control.rate * block.stage.dt) / L::load(&metric.h);
+        let factor = L::splat(control.rate * block.stage.dt) / L::load(metric.h());
         let c = L::load(&speed.fastest);
         match control.relax {
             Relax::Gradient => {

@@ -17,7 +17,7 @@ use crate::boundary::{FacePoint, GivesBack, Moment};
 use crate::built;
 use crate::lane::{F8, LANES, Lanes, load_array, store_array};
 use crate::mesh::{FACES, map};
-use crate::operators::{Metric, Neighbour, Side};
+use crate::operators::{BlockMetric, Neighbour, Side};
 use crate::riemann::{Looks, Medium, Riemann, Trace, hold, interface};
 use crate::state::UNKNOWNS;
 use crate::tensor::DEFORMATION;
@@ -29,7 +29,7 @@ pub(super) struct Faces<'a> {
     own: &'a [F8],
     /// The other side's, by face, with its own normal.
     other: &'a [Beyond<'a>; FACES],
-    metric: &'a Metric<F8>,
+    metric: BlockMetric<'a>,
     /// Points of a face.
     points: usize,
     /// See [`Block::turning`].
@@ -69,18 +69,20 @@ impl Faces<'_> {
         if R::LOOKS == Looks::Displacement {
             medium.turn = turn::<L, O, W>(own, &other, self.turning);
         }
-        let metric = self.metric.load::<L>();
-        let (normal, length) = (metric.normal(face), metric.length(face));
         let lift = &mut self.lift.as_chunks_mut::<UNKNOWNS>().0[m * face..m * (face + 1)];
-        for point in 0..m {
-            let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[point]));
-            let there = turned::<L, R, W>(other.load::<L, W>(point));
-            let plus = trace_of::<L, R, W>(&there);
-            if R::LOOKS == Looks::Displacement {
-                let held = held(&load_array::<L, W>(&own[point]), &there, self.medium.density);
-                store_array(held, &mut self.held.as_chunks_mut::<2>().0[m * face + point]);
+        let [runs, points] = self.metric.runs(m);
+        for run in 0..runs {
+            let (normal, length) = self.metric.at_face::<L>(face, run);
+            for point in run * points..(run + 1) * points {
+                let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[point]));
+                let there = turned::<L, R, W>(other.load::<L, W>(point));
+                let plus = trace_of::<L, R, W>(&there);
+                if R::LOOKS == Looks::Displacement {
+                    let held = held(&load_array::<L, W>(&own[point]), &there, self.medium.density);
+                    store_array(held, &mut self.held.as_chunks_mut::<2>().0[m * face + point]);
+                }
+                store_array(riemann.lifted(&minus, &plus, normal, &medium, length), &mut lift[point]);
             }
-            store_array(riemann.lifted(&minus, &plus, normal, &medium, length), &mut lift[point]);
         }
     }
 }
@@ -198,8 +200,7 @@ impl Block<'_> {
                 let Some(flux) = flux else { continue };
                 let between = self.held_between(face, point, lane, own, sides.other);
                 (0..2).for_each(|k| held[2 * point + k].0[lane] = between[k]);
-                let metric = self.metric().lane(lane);
-                let (normal, length) = (metric.normal(face), metric.length(face));
+                let (normal, length) = self.metric().at_face_of(lane, face, point);
                 for (k, flux) in flux.iter().enumerate() {
                     let own = if k < DEFORMATION { own[DEFORMATION + k / 2].0[lane] * normal[k % 2] } else { 0.0 };
                     lift[k].0[lane] = (flux + own) * length;
@@ -300,8 +301,8 @@ impl Block<'_> {
         let along = self.scheme.operators.line.basis.nodes[point];
         let end = (face % 2) as f64;
         let xi = if face < 2 { [end, along] } else { [along, end] };
-        let x = map::position(&geometry.corners_of(self.number, lane), xi);
-        let normal = geometry.blocks[self.number].lane(lane).normal(face);
+        let x = map::position(&geometry.map_of(self.number, lane), xi);
+        let (normal, _) = self.metric().at_face_of(lane, face, point);
         FacePoint { x, normal, medium: self.medium() }
     }
 }

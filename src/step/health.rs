@@ -41,7 +41,7 @@ impl Scheme {
     /// Reference coordinates of a place in a cell, m.
     pub fn position_of(&self, cell: usize, site: Site) -> [f64; 2] {
         let (block, lane) = self.operators.blocks.slot[cell];
-        map::position(&self.operators.geometry.corners_of(block, lane), self.parent_of(block, lane, site))
+        map::position(&self.operators.geometry.map_of(block, lane), self.parent_of(block, lane, site))
     }
 
     fn parent_of(&self, block: usize, lane: usize, site: Site) -> [f64; 2] {

@@ -12,11 +12,11 @@
 //! with R of the mean F of the cell. The corrector takes the faces as they are, and nothing of this rate.
 
 use super::block::Block;
-use super::volume::{cofactors, row};
+use super::volume::row;
 use crate::boundary::GivesBack;
 use crate::lane::{F8, LANES, Lanes, Work, load_array, store_array};
 use crate::mesh::FACES;
-use crate::operators::{Line, MOST_FACE_POINTS, Metric, Neighbour, determinant, with_nodes};
+use crate::operators::{BlockMetric, Line, MOST_FACE_POINTS, Neighbour, determinant, with_nodes};
 use crate::riemann::{creep, tangent};
 use crate::state::State;
 use crate::tensor::{AXES, DEFORMATION, dot};
@@ -27,7 +27,7 @@ type Pulls = [[[F8; AXES]; MOST_FACE_POINTS]; FACES];
 /// dp/dt at the nodes of a block by the springs of its faces.
 struct HeldRate<'a, const M: usize> {
     line: &'a Line,
-    metric: &'a Metric<F8>,
+    metric: BlockMetric<'a>,
     /// The unknowns at t_n, [component][node].
     u: &'a [F8],
     /// The creep of the faces, [face][point][2], m.
@@ -73,12 +73,12 @@ fn mean_rotation<L: Lanes, const M: usize>(u: &[F8]) -> [L; 2] {
 
 /// From the face points to the nodes, as [`super::lift::Lift`] does.
 #[inline(always)]
-fn lift<L: Lanes, const M: usize>(line: &Line, metric: &Metric<F8>, pulls: &Pulls, rate: &mut [F8]) {
+fn lift<L: Lanes, const M: usize>(line: &Line, metric: BlockMetric, pulls: &Pulls, rate: &mut [F8]) {
     let ends = [row::<M>(&line.lift[0]), row::<M>(&line.lift[1])];
-    let [one, two] = cofactors::<L, M>(line, &metric.load::<L>());
     for i in 0..M {
         for j in 0..M {
-            let inverse = L::splat(1.0) / determinant(one[i], two[j]);
+            let [one, two] = metric.at_node::<L>(line, i, j);
+            let inverse = L::splat(1.0) / determinant(one, two);
             for k in 0..AXES {
                 let mut sum = L::splat(ends[0][i]) * L::load(&pulls[0][j][k]);
                 sum = L::splat(ends[1][i]).mul_add(L::load(&pulls[1][j][k]), sum);
@@ -130,8 +130,8 @@ impl Block<'_> {
                     continue;
                 }
                 let modulus = 0.5 * self.scheme.spring_at(*group, self.material());
-                let along = tangent(self.metric().lane(lane).normal(face));
                 for (point, pull) in pulls.iter_mut().enumerate().take(m) {
+                    let along = tangent(self.metric().at_face_of(lane, face, point).0);
                     let a = [0, 1].map(|k| creep[AXES * (face * m + point) + k].0[lane]);
                     let size = modulus * dot(a, along);
                     (0..AXES).for_each(|k| pull[k].0[lane] = size * along[k]);

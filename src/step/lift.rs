@@ -1,9 +1,9 @@
 //! The lift (14): from the face points to the nodes of a block.
 
-use super::volume::{cofactors, row};
+use super::volume::row;
 use crate::lane::{F8, Lanes, Work};
 use crate::mesh::FACES;
-use crate::operators::{Line, Metric, determinant};
+use crate::operators::{Cofactors, Line, NodeMetric, determinant};
 use crate::state::UNKNOWNS;
 use crate::tensor::{AXES, DEFORMATION};
 
@@ -22,11 +22,11 @@ fn at_node<L: Lanes, const W: usize, const M: usize>(
 }
 
 /// dU_a/dt = (J dU_a/dt - Phi_a(x_fk) w_k lifted_fk / w_a) / J_a; w_k and one factor of w_a are the same number.
-pub(super) struct Lift<'a, const M: usize> {
+pub(super) struct Lift<'a, const M: usize, G> {
     /// The 1D tables.
     pub line: &'a Line,
     /// The block.
-    pub metric: &'a Metric<F8>,
+    pub metric: G,
     /// [face][point][6].
     pub lift: &'a [F8],
     /// [face][point][2], by the traces of what is held; none where the flux holds nothing.
@@ -35,18 +35,18 @@ pub(super) struct Lift<'a, const M: usize> {
     pub rate: &'a mut [F8],
 }
 
-impl<const M: usize> Work for Lift<'_, M> {
+impl<const M: usize, G: NodeMetric> Work for Lift<'_, M, G> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let n = M * M;
         let ends = [row::<M>(&self.line.lift[0]), row::<M>(&self.line.lift[1])];
         let lift = &self.lift.as_chunks::<UNKNOWNS>().0[..FACES * M];
-        let [one, two] = cofactors::<L, M>(self.line, &self.metric.load::<L>());
+        let cofactors = self.metric.cofactors::<L, M>(self.line);
         let mut inverse = [[L::zero(); M]; M];
         for i in 0..M {
             for j in 0..M {
-                inverse[i][j] = L::splat(1.0) / determinant(one[i], two[j]);
+                inverse[i][j] = L::splat(1.0) / determinant(cofactors.one(i, j), cofactors.two(i, j));
             }
         }
         for (k, rate) in self.rate.chunks_exact_mut(n).enumerate().take(UNKNOWNS) {

@@ -49,7 +49,7 @@ impl Block<'_> {
             }
         }
         let at = self.face_point(face, point, lane);
-        let length = self.metric().lane(lane).length(face);
+        let (_, length) = self.metric().at_face_of(lane, face, point);
         let per_length = |force: f64| force / (line.basis.weights[point] * length);
         let (t, push) = (force.map(per_length), push.map(per_length));
         let x = |k: usize| own[k].0[lane];

@@ -275,7 +275,7 @@ impl Meetings {
         let (m, n, stride) = (line.m, line.m * line.m, state.components * line.m * line.m);
         for (k, face) in contacts.faces.iter().enumerate() {
             let (block, local) = (face.face / FACES, face.face % FACES);
-            let corners = operators.geometry.corners_of(block, face.lane);
+            let corners = operators.geometry.map_of(block, face.lane);
             let moved = |i: usize, s: f64| {
                 let x = map::position(&corners, on_face(local, s));
                 if !state.has_displacement() {

@@ -60,14 +60,14 @@ impl Obstacles {
         // Corners are nodes of the mesh: those of two cells are equal to the last bit.
         let mut at_corner: HashMap<(usize, [u64; 2]), Ends> = HashMap::new();
         for &(block, lane) in &blocks.slot {
-            let corners = scheme.operators.geometry.corners_of(block, lane);
+            let map = scheme.operators.geometry.map_of(block, lane);
             for (face, lanes) in blocks.neighbours[block].iter().enumerate() {
                 let Neighbour::Boundary(group) = lanes[lane] else { continue };
                 if !is_obstacle.get(group).is_some_and(|is| *is) {
                     continue;
                 }
                 for (end, corner) in corners_of_face(face).into_iter().enumerate() {
-                    let key = (group, corners[corner].map(f64::to_bits));
+                    let key = (group, map.corners[corner].map(f64::to_bits));
                     at_corner.entry(key).or_default().push((out.faces.len(), end));
                 }
                 out.by_place.insert([block, face, lane], out.faces.len());
@@ -130,7 +130,7 @@ impl Face {
         let (geometry, line) = (&scheme.operators.geometry, &scheme.operators.line);
         let stage = Stage { number: 0, times: &[], row: &[], dt: 0.0, elapsed: 0.0, obstacles: None };
         let block = Block { scheme, stage: &stage, number };
-        let corners = geometry.corners_of(number, lane);
+        let corners = geometry.map_of(number, lane);
         Self {
             group,
             place,

@@ -277,7 +277,7 @@ impl<const M: usize> crate::lane::Work for OfDegree<'_, M> {
     fn run<L: Lanes>(self) -> u8 {
         let Trouble { scheme, block, u, share, masses } = self.0;
         let (n, line) = (M * M, &scheme.operators.line);
-        let metric = &scheme.operators.geometry.blocks[block];
+        let metric = scheme.operators.geometry.of(block);
         Masses::<'_, M> { line, metric, masses: &mut *masses }.run::<L>();
         let at = |k: usize, a: usize| L::load(&u[k * n + a]);
         let (mut sum, mut area, mut smallest) = ([L::zero(); DEFORMATION], L::zero(), L::splat(f64::INFINITY));

@@ -71,7 +71,7 @@ impl Face {
 
 impl Face {
     pub fn new(operators: &Operators, law: &Law, [block, face, lane]: [usize; 3]) -> Self {
-        let corners = operators.geometry.corners_of(block, lane);
+        let corners = operators.geometry.map_of(block, lane);
         let ends = [0.0, 1.0].map(|s| map::position(&corners, on_face(face, s)));
         let h = operators.geometry.blocks[block].lane(lane).h;
         let speed = law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0];

@@ -15,7 +15,7 @@ impl Scheme {
         if u.len() < (UNKNOWNS + AXES) * n {
             return;
         }
-        let (corners, nodes) = (self.operators.geometry.corners_of(block, lane), &self.operators.line.basis.nodes);
+        let (corners, nodes) = (self.operators.geometry.map_of(block, lane), &self.operators.line.basis.nodes);
         let place = |a: usize| map::position(&corners, [nodes[a / m], nodes[a % m]]);
         let weights = self.operators.node_weights(block, lane);
         let area: f64 = weights[..n].iter().sum();

@@ -7,7 +7,7 @@ use super::trace::{trace_of, turned, with_width};
 use super::volume::width;
 use crate::lane::{F8, Lanes, load_array};
 use crate::mesh::FACES;
-use crate::operators::Metric;
+use crate::operators::BlockMetric;
 use crate::riemann::{Looks, Medium, Riemann};
 use crate::state::UNKNOWNS;
 
@@ -19,7 +19,7 @@ pub(super) struct SpringFaces<'a> {
     pub own: &'a [F8],
     /// The other side's, by face, with its own normal.
     pub other: &'a [Beyond<'a>; FACES],
-    pub metric: &'a Metric<F8>,
+    pub metric: BlockMetric<'a>,
     /// Points of a face.
     pub points: usize,
     pub medium: Medium<f64>,
@@ -40,11 +40,11 @@ impl FluxWork for SpringFaces<'_> {
 impl SpringFaces<'_> {
     #[inline(always)]
     fn with<L: Lanes, R: Riemann, const W: usize>(mut self, riemann: &R) {
-        let (metric, medium) = (self.metric.load::<L>(), self.medium.splat::<L>());
+        let (metric, medium) = (self.metric, self.medium.splat::<L>());
         let (own, lift) = (self.own.as_chunks::<W>().0, self.lift.as_chunks_mut::<UNKNOWNS>().0);
         for face in 0..FACES {
-            let (normal, length) = (metric.normal(face), metric.length(face));
             for point in 0..self.points {
+                let (normal, length) = metric.at_face::<L>(face, point);
                 let at = self.points * face + point;
                 let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[at]));
                 let plus = trace_of::<L, R, W>(&turned::<L, R, W>(self.other[face].load::<L, W>(point)));

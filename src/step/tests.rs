@@ -83,7 +83,7 @@ pub(super) fn state(mesh: &Mesh, scheme: &Scheme, u: impl Fn([f64; 2], usize) ->
     let mut cells = vec![0.0; mesh.cells.len() * 6 * n];
     for (cell, values) in cells.chunks_mut(6 * n).enumerate() {
         for a in 0..n {
-            let x = map::position(&mesh.corners(cell), scheme.operators.line.basis.node_2d(a));
+            let x = map::position(&mesh.map(cell), scheme.operators.line.basis.node_2d(a));
             u(x, cell * n + a).into_iter().enumerate().for_each(|(k, u)| values[k * n + a] = u);
         }
     }

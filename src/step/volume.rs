@@ -1,14 +1,14 @@
 //! Volume term of the corrector (11), (12) and traces, from averages at the Gauss nodes.
 //!
 //! F rows in strong form (D v; `finish` adds the lifted jump of v), exact on uniform states; p rows in weak form. Both
-//! are exact integrals on bilinear cells, so the two forms agree there to rounding.
+//! are exact integrals, on straight cells and on curved ones ([`crate::operators::curved`]), so the two forms agree to rounding.
 
 use super::block_work::LawWork;
 use super::worst::Worst;
 use crate::lane::{F8, Lane, Lanes, Twin, Work, load_array, store_array, twins};
 use crate::material::Material;
 use crate::mesh::FACES;
-use crate::operators::{Line, Metric, determinant};
+use crate::operators::{BlockMetric, Cofactors, Line, NodeMetric, determinant, with_terms};
 use crate::riemann::{Looks, tangent};
 use crate::state::UNKNOWNS;
 use crate::tensor::{self, AXES, DEFORMATION};
@@ -87,46 +87,34 @@ pub fn square<const M: usize>(numbers: &[f64]) -> [[f64; M]; M] {
 
 /// J dF_ia/dt = J dv_i/dX_a, J dp_i/dt = - sum_b K_a[., b] P_ia(b), into the first six components of `rate`; J, the
 /// determinant of dX/dxi, is left to `finish`, which divides once.
-pub struct Volume<'a, const M: usize> {
+pub struct Volume<'a, const M: usize, G> {
     /// The 1D tables.
     pub line: &'a Line,
     /// The block.
-    pub metric: &'a Metric<F8>,
+    pub metric: G,
     /// Averages in.
     pub arrays: &'a mut Arrays,
     /// J dU/dt of the block, out.
     pub rate: &'a mut [F8],
 }
 
-/// J dxi_1/dX at the M nodes of xi1, and J dxi_2/dX at those of xi2.
-#[inline(always)]
-pub fn cofactors<L: Lanes, const M: usize>(line: &Line, metric: &Metric<L>) -> [[[L; 2]; M]; 2] {
-    let nodes = row::<M>(&line.basis.nodes);
-    let mut out = [[[L::zero(); 2]; M]; 2];
-    for k in 0..M {
-        out[0][k] = metric.cofactor1(nodes[k]);
-        out[1][k] = metric.cofactor2(nodes[k]);
-    }
-    out
-}
-
-impl<const M: usize> Work for Volume<'_, M> {
+impl<const M: usize, G: NodeMetric> Work for Volume<'_, M, G> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
         let n = M * M;
-        let [one, two] = cofactors::<L, M>(self.line, &self.metric.load::<L>());
+        let cofactors = self.metric.cofactors::<L, M>(self.line);
         let stress = &self.arrays.mean_stress.as_chunks::<DEFORMATION>().0[..n];
         let contravariant = &mut self.arrays.contravariant.as_chunks_mut::<DEFORMATION>().0[..n];
-        for (i, one) in one.iter().enumerate() {
-            for (j, two) in two.iter().enumerate() {
+        for i in 0..M {
+            for j in 0..M {
                 let a = i * M + j;
                 let p = load_array::<L, DEFORMATION>(&stress[a]);
-                let (t1, t2) = (tensor::times(p, *one), tensor::times(p, *two));
+                let (t1, t2) = (tensor::times(p, cofactors.one(i, j)), tensor::times(p, cofactors.two(i, j)));
                 store_array([t1[0], t1[1], t2[0], t2[1]], &mut contravariant[a]);
             }
         }
-        self.rates::<L>(&one, &two);
+        self.rates::<L, _>(&cofactors);
     }
 }
 
@@ -160,10 +148,10 @@ fn nodes_of<const M: usize, const W: usize>(values: &[[F8; W]], first: usize, st
     out
 }
 
-impl<const M: usize> Volume<'_, M> {
-    /// Rows of F: D v; rows of p in weak form; `one` and `two` are the [`cofactors`].
+impl<const M: usize, G> Volume<'_, M, G> {
+    /// Rows of F: D v; rows of p in weak form.
     #[inline(always)]
-    fn rates<L: Lanes>(&mut self, one: &[[L; 2]; M], two: &[[L; 2]; M]) {
+    fn rates<L: Lanes, C: Cofactors<L>>(&mut self, cofactors: &C) {
         let (slope, weak) = (square::<M>(&self.line.slope), square::<M>(&self.line.weak));
         let n = M * M;
         let mean = &self.arrays.mean.as_chunks::<UNKNOWNS>().0[..n];
@@ -174,9 +162,10 @@ impl<const M: usize> Volume<'_, M> {
                 let a = i * M + j;
                 let first = line_sum::<L, M, UNKNOWNS, AXES>(&slope[i], nodes_of(mean, j, M), DEFORMATION);
                 let second = line_sum::<L, M, UNKNOWNS, AXES>(&slope[j], nodes_of(mean, i * M, 1), DEFORMATION);
+                let (one, two) = (cofactors.one(i, j), cofactors.two(i, j));
                 for r in 0..2 {
                     for axis in 0..2 {
-                        let gradient = first[r].mul_add(one[i][axis], second[r] * two[j][axis]);
+                        let gradient = first[r].mul_add(one[axis], second[r] * two[axis]);
                         gradient.store(&mut rate[(2 * r + axis) * n + a]);
                     }
                 }
@@ -195,7 +184,7 @@ pub struct Masses<'a, const M: usize> {
     /// The 1D tables.
     pub line: &'a Line,
     /// The block.
-    pub metric: &'a Metric<F8>,
+    pub metric: BlockMetric<'a>,
     /// By node, out.
     pub masses: &'a mut [F8],
 }
@@ -204,16 +193,21 @@ impl<'a, const M: usize> Work for Masses<'a, M> {
     type Out = &'a [F8];
     #[inline(always)]
     fn run<L: Lanes>(self) -> &'a [F8] {
-        let [one, two] = cofactors::<L, M>(self.line, &self.metric.load::<L>());
-        let weights = row::<M>(&self.line.basis.weights);
-        let masses = &mut self.masses[..M * M];
-        for i in 0..M {
-            for j in 0..M {
-                let weight = L::splat(weights[i] * weights[j]);
-                (weight * determinant(one[i], two[j])).store(&mut masses[i * M + j]);
-            }
-        }
+        let Self { line, metric, masses } = self;
+        let masses = &mut masses[..M * M];
+        with_terms!(metric, terms => of_masses::<L, M, _>(line, &terms.cofactors::<L, M>(line), masses));
         masses
+    }
+}
+
+#[inline(always)]
+fn of_masses<L: Lanes, const M: usize, C: Cofactors<L>>(line: &Line, cofactors: &C, masses: &mut [F8]) {
+    let weights = row::<M>(&line.basis.weights);
+    for i in 0..M {
+        for j in 0..M {
+            let weight = L::splat(weights[i] * weights[j]);
+            (weight * determinant(cofactors.one(i, j), cofactors.two(i, j))).store(&mut masses[i * M + j]);
+        }
     }
 }
 
@@ -231,7 +225,7 @@ pub struct Traces<'a, const M: usize, const METERED: bool> {
     /// The 1D tables.
     pub line: &'a Line,
     /// The block.
-    pub metric: &'a Metric<F8>,
+    pub metric: BlockMetric<'a>,
     /// Averages in.
     pub arrays: &'a Arrays,
     /// Numbers of a trace, see [`width`].
@@ -246,20 +240,20 @@ impl<const M: usize, const METERED: bool> Work for Traces<'_, M, METERED> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
-        let metric = self.metric.load::<L>();
+        let normals = self.metric.normals::<L>();
         for face in 0..2 {
-            self.of_face::<L, true>(face, metric.normal(face));
+            self.of_face::<L, true>(face, normals[face]);
         }
         for face in 2..FACES {
-            self.of_face::<L, false>(face, metric.normal(face));
+            self.of_face::<L, false>(face, normals[face]);
         }
     }
 }
 
 impl<const M: usize, const METERED: bool> Traces<'_, M, METERED> {
-    /// Those of a face that xi1 runs towards (FIRST), or xi2.
+    /// Those of a face that xi1 runs towards (FIRST), or xi2; `straight` is its normal where it is straight.
     #[inline(always)]
-    fn of_face<L: Lanes, const FIRST: bool>(&mut self, face: usize, normal: [L; 2]) {
+    fn of_face<L: Lanes, const FIRST: bool>(&mut self, face: usize, straight: [L; 2]) {
         let (ends, held) = (row::<M>(&self.line.ends[face % 2]), row::<M>(&self.line.held[face % 2]));
         let mean = &self.arrays.mean.as_chunks::<UNKNOWNS>().0[..M * M];
         let mean_stress = &self.arrays.mean_stress.as_chunks::<DEFORMATION>().0[..M * M];
@@ -267,6 +261,7 @@ impl<const M: usize, const METERED: bool> Traces<'_, M, METERED> {
         let out = &mut self.traces[face * M * width..(face + 1) * M * width];
         for (point, out) in out.chunks_exact_mut(width).enumerate().take(M) {
             let (first, stride) = if FIRST { (point, M) } else { (point * M, 1) };
+            let normal = self.metric.normal_at(straight, face, point);
             let stress = line_sum::<L, M, DEFORMATION, DEFORMATION>(&ends, nodes_of(mean_stress, first, stride), 0);
             store_array(tensor::times(stress, normal), &mut out[UNKNOWNS..UNKNOWNS + AXES]);
             if METERED {
@@ -291,7 +286,7 @@ impl<const M: usize, const METERED: bool> Traces<'_, M, METERED> {
 /// at it.
 pub struct Speeds<'a> {
     /// The block.
-    pub metric: &'a Metric<F8>,
+    pub metric: BlockMetric<'a>,
     /// Numbers of a trace, see [`width`].
     pub width: usize,
     /// What the flux looks at.
@@ -324,20 +319,15 @@ impl LawWork for Speeds<'_> {
 }
 
 impl Speeds<'_> {
-    /// The normals of all faces.
-    #[inline(always)]
-    fn normals<L: Lanes>(&self) -> [[L; 2]; FACES] {
-        let metric = self.metric.load::<L>();
-        [metric.normal(0), metric.normal(1), metric.normal(2), metric.normal(3)]
-    }
-
     #[inline(always)]
     fn of_pressure<L: Lanes, M: Material, const W: usize>(&mut self, law: M) -> L {
-        let (m, normals) = (self.traces.len() / W / FACES, self.normals::<L>());
+        let (m, metric) = (self.traces.len() / W / FACES, self.metric);
+        let normals = metric.normals::<L>();
         let mut smallest = Twin(L::splat(f64::INFINITY), L::splat(f64::INFINITY));
         for pair in 0..2 * m {
             let (a, b) = (2 * pair, 2 * pair + 1);
-            let normals = twins(normals[a / m], normals[b / m]);
+            let normals =
+                twins(metric.normal_at(normals[a / m], a / m, a % m), metric.normal_at(normals[b / m], b / m, b % m));
             let traces = &mut self.traces.as_chunks_mut::<W>().0[a..a + 2];
             let f = twins(
                 load_array::<L, DEFORMATION>(&traces[0][..DEFORMATION]),
@@ -353,10 +343,11 @@ impl Speeds<'_> {
 
     #[inline(always)]
     fn of_both<L: Lanes, M: Material, const W: usize>(&mut self, law: M) -> L {
-        let (m, normals) = (self.traces.len() / W / FACES, self.normals::<L>());
+        let (m, metric) = (self.traces.len() / W / FACES, self.metric);
+        let normals = metric.normals::<L>();
         let mut smallest = L::splat(f64::INFINITY);
         for point in 0..FACES * m {
-            let normal = normals[point / m];
+            let normal = metric.normal_at(normals[point / m], point / m, point % m);
             let trace = &mut self.traces.as_chunks_mut::<W>().0[point];
             let f = load_array::<L, DEFORMATION>(&trace[..DEFORMATION]);
             smallest = smallest.min(tensor::det(f));

@@ -37,7 +37,7 @@ impl Block<'_> {
             Trace { f, v: [x(4), x(5)], t: [x(6), x(7)], c: self.law().speeds(f, at.normal) }
         };
         let inside: Vec<_> = points.iter().zip(own.chunks_exact(width)).map(of).collect();
-        let corners = scheme.operators.geometry.corners_of(self.number, lane);
+        let corners = scheme.operators.geometry.map_of(self.number, lane);
         let ends = [0.0, 1.0].map(|s| map::position(&corners, on_face(face, s)));
         let beyond = self.stage.obstacles.map_or([None; 2], |all| all.beyond([self.number, face, lane]));
         let whole = WholeFace { ends, points: &points, inside: &inside, basis: &line.basis, beyond };

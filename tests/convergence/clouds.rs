@@ -210,7 +210,7 @@ fn restarted(degree: usize, n: usize, finer: f64, grids: [Grid; 2]) -> f64 {
     let (mut positions, mut values) = (vec![], vec![]);
     for cell in 0..old.cells.len() {
         for &xi in points.of(cell) {
-            positions.push(map::position(&old.corners(cell), xi));
+            positions.push(map::position(&old.map(cell), xi));
             let weights = source.operators.line.basis.values_2d(xi);
             let nodes = |k: usize| &cells[(6 * cell + k) * n_nodes..(6 * cell + k + 1) * n_nodes];
             values.extend((0..6).map(|k| nodes(k).iter().zip(&weights).map(|(u, w)| u * w).sum::<f64>()));

@@ -50,7 +50,7 @@ impl Points {
                 let lattice = || (0..=degree + 1).flat_map(|i| (0..=degree + 1).map(move |j| [at(i), at(j)]));
                 // Each point once: those of an edge or corner come from all cells around it, up to rounding.
                 let mut points: Vec<[f64; 2]> =
-                    (0..cells).flat_map(|c| lattice().map(move |xi| map::position(&mesh.corners(c), xi))).collect();
+                    (0..cells).flat_map(|c| lattice().map(move |xi| map::position(&mesh.map(c), xi))).collect();
                 let same = |x: &[f64; 2]| x.map(|x| (x * 1e9).round() as i64);
                 points.sort_by_key(same);
                 points.dedup_by_key(|x| same(x));

@@ -109,7 +109,7 @@ pub fn start(problem: &Problem, mesh: &Mesh, scheme: &Scheme) -> State {
     let mut cells = vec![0.0; mesh.cells.len() * 6 * n];
     for (cell, values) in cells.chunks_mut(6 * n).enumerate() {
         for a in 0..n {
-            let x = map::position(&mesh.corners(cell), scheme.operators.line.basis.node_2d(a));
+            let x = map::position(&mesh.map(cell), scheme.operators.line.basis.node_2d(a));
             let (f, v) = (problem.exact.deformation(x, 0.0), problem.exact.velocity(x, 0.0));
             let p = v.map(|v| problem.law.density() * v);
             let u = [f[0], f[1], f[2], f[3], p[0], p[1]];

@@ -71,7 +71,7 @@ fn the_two_surfaces_have_the_areas_and_lengths_of_their_geometry() {
     assert_eq!(mesh.groups, ["steel", "soft"]);
     assert_eq!(mesh.edge_groups, ["loaded", "free", "interface"]);
     let area = |group: usize| -> f64 {
-        (0..mesh.cells.len()).filter(|&c| mesh.cell_group[c] == group).map(|c| map::area(&mesh.corners(c))).sum()
+        (0..mesh.cells.len()).filter(|&c| mesh.cell_group[c] == group).map(|c| map::area(&mesh.map(c))).sum()
     };
     // Polygons: 1.1 and .9 m^2, up to the 16 digits of the file.
     assert!((area(0) - 1.1).abs() < 1e-14 && (area(1) - 0.9).abs() < 1e-14);
@@ -112,7 +112,7 @@ fn the_shipped_square_is_the_rectangle_of_the_scene() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/square_impact.msh");
     let (square, own) = (gmsh::read(&path).unwrap(), rectangle([3.0, 3.0], [30, 30]).unwrap());
     let sorted = |mesh: &Mesh| {
-        let middle = |c| map::position(&mesh.corners(c), [0.5, 0.5]).map(|x| (x * 1e9).round() as i64);
+        let middle = |c| map::position(&mesh.map(c), [0.5, 0.5]).map(|x| (x * 1e9).round() as i64);
         let mut middles: Vec<_> = (0..mesh.cells.len()).map(middle).collect();
         middles.sort_unstable();
         middles
@@ -145,7 +145,7 @@ fn a_mesh_that_cannot_be_written_is_an_output_error() {
 #[test]
 fn clockwise_cells_are_turned() {
     let mesh = read("clockwise.msh");
-    assert!((0..4).all(|c| map::area(&mesh.corners(c)) > 0.0));
+    assert!((0..4).all(|c| map::area(&mesh.map(c)) > 0.0));
     assert!((length(&mesh, "edge") - 4.0).abs() < 1e-11, "transfinite nodes of Gmsh are off by 1e-12");
     assert!(links(&mesh).is_ok());
 }

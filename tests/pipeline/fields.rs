@@ -69,7 +69,7 @@ fn differences(bench: &Bench, sets: &[&str], exact: impl Fn([f64; 2]) -> ([f64; 
     let mut worst = [0.0_f64; 3];
     for (cell, values) in all.chunks(size).enumerate() {
         for (a, xi) in line.nodes().into_iter().enumerate() {
-            let (f, v, u) = exact(map::position(&mesh.corners(cell), xi));
+            let (f, v, u) = exact(map::position(&mesh.map(cell), xi));
             let momentum = v.map(|v| v * 7800.0);
             for (k, wanted) in f.into_iter().chain(momentum).chain(u).enumerate().take(size / n) {
                 let scale = if (4..6).contains(&k) { 7800.0 } else { 1.0 };

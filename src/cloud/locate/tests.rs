@@ -51,7 +51,7 @@ fn points_inside_cells_are_found_with_their_parent_coordinates() {
     let cloud = seed(Layout::Jitter { seed: 4, amount: 0.3 }, 4, mesh.cells.len());
     for cell in 0..mesh.cells.len() {
         for &xi in cloud.of(cell) {
-            let (found, at) = locator.find(map::position(&mesh.corners(cell), xi)).unwrap();
+            let (found, at) = locator.find(map::position(&mesh.map(cell), xi)).unwrap();
             // Newton ends at rounding, amplified by 1 / det of these cells, above 0.1.
             assert!(found == cell && (at[0] - xi[0]).abs().max((at[1] - xi[1]).abs()) < 1e-14);
         }
@@ -65,9 +65,9 @@ fn points_on_edges_and_corners_belong_to_the_lowest_cell_that_they_touch() {
         for cell in 0..mesh.cells.len() {
             for t in [0.0, 0.3, 0.5, 1.0] {
                 for xi in [[0.0, t], [1.0, t], [t, 0.0], [t, 1.0]] {
-                    let x = map::position(&mesh.corners(cell), xi);
+                    let x = map::position(&mesh.map(cell), xi);
                     let touches = |&c: &usize| {
-                        map::parent(&mesh.corners(c), x)
+                        map::parent(&mesh.map(c), x)
                             .is_some_and(|xi| xi.iter().all(|xi| (-1e-9..=1.0 + 1e-9).contains(xi)))
                     };
                     let lowest = (0..mesh.cells.len()).find(touches);
@@ -109,7 +109,7 @@ fn the_walk_finds_what_the_hierarchy_finds_to_the_bit_from_any_cell() {
         let mut points: Vec<_> = random.xi.iter().map(|x| [7.4 * x[0] - 0.2, 5.4 * x[1] - 0.2]).collect();
         for cell in 0..mesh.cells.len() {
             let edge = [[0.0, 0.0], [1.0, 0.37], [0.37, 1.0], [0.5, 0.0], [1.0, 1.0], [1e-11, 0.5]];
-            points.extend(edge.map(|xi| map::position(&mesh.corners(cell), xi)));
+            points.extend(edge.map(|xi| map::position(&mesh.map(cell), xi)));
         }
         points.extend([[f64::NAN, 1.0], [f64::INFINITY, 1.0], [1e300, -1e300]]);
         let mut walked = 0;
@@ -133,8 +133,8 @@ fn points_on_edges_are_not_lost_far_from_the_origin() {
     let locator = Locator::new(&mesh);
     for cell in 0..100 {
         for t in [0.0, 0.123, 0.77, 1.0] {
-            assert!(locator.find(map::position(&mesh.corners(cell), [t, 1.0])).is_some());
-            assert!(locator.find(map::position(&mesh.corners(cell), [1.0, t])).is_some());
+            assert!(locator.find(map::position(&mesh.map(cell), [t, 1.0])).is_some());
+            assert!(locator.find(map::position(&mesh.map(cell), [1.0, t])).is_some());
         }
     }
 }
@@ -144,7 +144,7 @@ fn a_seeded_cloud_shuffled_comes_back_from_its_positions() {
     let mesh = distorted();
     let cloud = seed(Layout::Midpoints, 3, mesh.cells.len());
     let mut points: Vec<[f64; 2]> = (0..mesh.cells.len())
-        .flat_map(|c| cloud.of(c).iter().map(|&xi| map::position(&mesh.corners(c), xi)).collect::<Vec<_>>())
+        .flat_map(|c| cloud.of(c).iter().map(|&xi| map::position(&mesh.map(c), xi)).collect::<Vec<_>>())
         .collect();
     points.reverse();
     let (found, order) = from_points(&mesh, &Locator::new(&mesh), &points).unwrap();

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::error::Error;
 use super::kinds::Kind;
-use super::{Element, Raw};
+use super::{Element, Middles, Raw};
+use crate::mesh::map::{self, Bulge};
 use crate::mesh::{BoundaryEdge, Mesh};
 
 /// Largest |z| that counts as 0, relative to the extent in x and y: it allows for rounding in a rotated or computed plane.
@@ -17,6 +18,7 @@ pub fn mesh(mut raw: Raw) -> Result<Mesh, Error> {
     raw.quads.sort_by_key(|quad| quad.number);
     distinct(&raw)?;
     let (nodes, cells) = nodes(&mut raw)?;
+    let bulges = bulges(&raw, &nodes, &cells)?;
     let (groups, cell_group) = cell_groups(&raw)?;
     let (edge_groups, edges) = edges(&raw, &nodes, &cells)?;
     let mesh = Mesh {
@@ -27,6 +29,7 @@ pub fn mesh(mut raw: Raw) -> Result<Mesh, Error> {
         edges,
         edge_groups,
         original: raw.quads.iter().map(|quad| quad.number).collect(),
+        bulges,
     };
     let mut mesh = mesh.checked()?;
     // Only after the check, because the check may turn cells.
@@ -35,7 +38,7 @@ pub fn mesh(mut raw: Raw) -> Result<Mesh, Error> {
     Ok(mesh)
 }
 
-/// An error if there are elements that are no first-order quadrilaterals, lines or points: first solids, then higher
+/// An error if there are elements that are no quadrilaterals of order 1 or 2, lines or points: first solids, then higher
 /// orders, then triangles.
 fn usable(raw: &Raw) -> Result<(), Error> {
     let refused = raw.refused.iter().filter_map(|(&kind, &(count, first))| Some((Kind::of(kind)?, count, first)));
@@ -108,6 +111,38 @@ fn nodes(raw: &mut Raw) -> Result<(Vec<(u64, [f64; 3])>, Vec<[usize; 4]>), Error
     in_plane(&nodes)?;
     Ok((nodes, cells))
 }
+
+/// How the edges of the quadrilaterals are curved, by the nodes in their middles; empty where all are straight.
+fn bulges(raw: &Raw, nodes: &[(u64, [f64; 3])], cells: &[[usize; 4]]) -> Result<Vec<Bulge>, Error> {
+    if raw.middles.is_empty() {
+        return Ok(if raw.bulges.len() == cells.len() { raw.bulges.clone() } else { vec![] });
+    }
+    let of_quad: HashMap<u64, &Middles> = raw.middles.iter().map(|middles| (middles.number, middles)).collect();
+    let mut seen: Vec<(u64, [f64; 3])> = nodes.to_vec();
+    let mut find = |element: u64, node: u64| {
+        let unknown = |_| Error::UnknownNode { element, node };
+        let at = raw.nodes.binary_search_by_key(&node, |n| n.0).map_err(unknown)?;
+        seen.push(raw.nodes[at]);
+        Ok::<[f64; 2], Error>([raw.nodes[at].1[0], raw.nodes[at].1[1]])
+    };
+    let mut out = vec![Bulge::default(); cells.len()];
+    for ((quad, cell), bulge) in raw.quads.iter().zip(cells).zip(&mut out) {
+        let Some(middles) = of_quad.get(&quad.number) else { continue };
+        let mut faces = [[0.0; 2]; 4];
+        for (face, node) in SIDES.into_iter().zip(middles.edges) {
+            faces[face] = find(quad.number, node)?;
+        }
+        let own = middles.own.map(|node| find(quad.number, node)).transpose()?;
+        let corners = cell.map(|node| [nodes[node].1[0], nodes[node].1[1]]);
+        *bulge = map::bulge_of(&corners, faces, own).unwrap_or_default();
+    }
+    in_plane(&seen)?;
+    let straight = out.iter().all(|bulge| *bulge == Bulge::default());
+    Ok(if straight { vec![] } else { out })
+}
+
+/// Local faces in the order of the edges of an element, from corner k to corner k + 1.
+pub(super) const SIDES: [usize; 4] = [2, 1, 3, 0];
 
 fn in_plane(nodes: &[(u64, [f64; 3])]) -> Result<(), Error> {
     let extent = [0, 1].map(|i| {

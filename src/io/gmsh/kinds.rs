@@ -23,6 +23,12 @@ const fn kind(number: i32, name: &'static str, dimension: u8, order: u8, nodes: 
 pub const LINE: i32 = 1;
 /// A four-node quadrilateral.
 pub const QUAD: i32 = 3;
+/// A line of order 2: its ends, then its middle.
+pub const LINE_3: i32 = 8;
+/// A quadrilateral of order 2 of 9 nodes: corners, middles of its edges from corner k to k + 1, its own middle.
+pub const QUAD_9: i32 = 10;
+/// A quadrilateral of order 2 of 8 nodes: without the last.
+pub const QUAD_8: i32 = 16;
 /// A point.
 pub const POINT: i32 = 15;
 
@@ -35,15 +41,15 @@ const KINDS: [Kind; 36] = [
     kind(5, "hexahedra", 3, 1, 8),
     kind(6, "prisms", 3, 1, 6),
     kind(7, "pyramids", 3, 1, 5),
-    kind(8, "lines of order 2", 1, 2, 3),
+    kind(LINE_3, "lines of order 2", 1, 2, 3),
     kind(9, "triangles of order 2", 2, 2, 6),
-    kind(10, "quadrilaterals of order 2 (9 nodes)", 2, 2, 9),
+    kind(QUAD_9, "quadrilaterals of order 2 (9 nodes)", 2, 2, 9),
     kind(11, "tetrahedra of order 2", 3, 2, 10),
     kind(12, "hexahedra of order 2", 3, 2, 27),
     kind(13, "prisms of order 2", 3, 2, 18),
     kind(14, "pyramids of order 2", 3, 2, 14),
     kind(POINT, "points", 0, 1, 1),
-    kind(16, "quadrilaterals of order 2 (8 nodes)", 2, 2, 8),
+    kind(QUAD_8, "quadrilaterals of order 2 (8 nodes)", 2, 2, 8),
     kind(17, "hexahedra of order 2 (20 nodes)", 3, 2, 20),
     kind(18, "prisms of order 2 (15 nodes)", 3, 2, 15),
     kind(19, "pyramids of order 2 (13 nodes)", 3, 2, 13),
@@ -74,7 +80,17 @@ impl Kind {
 
     /// Whether a file may have elements of this kind: they are read, or can be ignored without loss.
     pub fn usable(&self) -> bool {
-        [LINE, QUAD, POINT].contains(&self.number)
+        self.is_line() || self.is_quad() || self.number == POINT
+    }
+
+    /// Whether it is a line that is read.
+    pub fn is_line(&self) -> bool {
+        [LINE, LINE_3].contains(&self.number)
+    }
+
+    /// Whether it is a quadrilateral that is read.
+    pub fn is_quad(&self) -> bool {
+        [QUAD, QUAD_8, QUAD_9].contains(&self.number)
     }
 
     /// What to do about elements of this kind.
@@ -83,7 +99,9 @@ impl Kind {
             (3, _) => {
                 "dgmpm is two-dimensional: mesh and save surfaces only (`gmsh -2 case.geo`, no `Physical Volume`)"
             }
-            (_, 2..) => "cells are bilinear: save first-order elements, in Gmsh `Mesh.ElementOrder = 1;`",
+            (_, 2..) => {
+                "cells are quadrilaterals with straight edges or of order 2: in Gmsh `Mesh.ElementOrder = 1;` or `= 2;`"
+            }
             _ => {
                 "cells are quadrilaterals: in Gmsh add `Recombine Surface {:};` or `Mesh.RecombineAll = 1;` (where triangles stay: `Mesh.RecombinationAlgorithm = 3;` or `Mesh.SubdivisionAlgorithm = 1;`)"
             }

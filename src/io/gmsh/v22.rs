@@ -1,9 +1,9 @@
 //! Nodes and elements of MSH 2.2.
 
+use super::Raw;
 use super::error::Error;
-use super::kinds::{Kind, LINE, QUAD};
+use super::kinds::Kind;
 use super::source::Source;
-use super::{Element, Raw};
 
 /// `number-of-nodes`, then `number x y z` each; in `$ParametricNodes` (`Mesh.SaveParametric = 1`) with `dimension entity`
 /// behind them, and as many parameters as the entity is a curve (1) or a surface (2).
@@ -82,31 +82,13 @@ fn element(source: &mut Source, raw: &mut Raw, kind: Kind, number: Option<u64>, 
             group = value.checked_abs().ok_or_else(|| source.wrong("a tag"))?;
         }
     }
-    match kind.number {
-        LINE => {
-            let nodes = [node(source)?, node(source)?];
-            raw.lines.push(Element { number, group, nodes });
-        }
-        QUAD => {
-            let nodes = [node(source)?, node(source)?, node(source)?, node(source)?];
-            raw.surfaces |= group != 0;
-            raw.quads.push(Element { number, group, nodes });
-        }
-        _ => {
-            for _ in 0..kind.nodes {
-                node(source)?;
-            }
-            if !kind.usable() {
-                raw.refused.entry(kind.number).or_insert((0, number)).0 += 1;
-            }
-        }
-    }
-    Ok(())
+    raw.surfaces |= kind.is_quad() && group != 0;
+    super::element(raw, kind, (number, group), || node(source))
 }
 
 fn kind(source: &mut Source) -> Result<Kind, Error> {
     let kind = Kind::of(source.int("the type of an element")?);
-    kind.ok_or_else(|| source.wrong("a known type of element (lines are 1, quadrilaterals 3)"))
+    kind.ok_or_else(|| source.wrong("a known type of element (lines are 1 and 8, quadrilaterals 3, 10 and 16)"))
 }
 
 fn node(source: &mut Source) -> Result<u64, Error> {

@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
+use super::Raw;
 use super::error::Error;
-use super::kinds::{Kind, LINE, QUAD};
+use super::kinds::Kind;
 use super::source::Source;
-use super::{Element, Raw};
 
 /// Physical tags of each entity, by dimension and tag.
 pub type Entities = HashMap<(i32, i32), Vec<i32>>;
@@ -119,7 +119,8 @@ pub fn elements(source: &mut Source, raw: &mut Raw, entities: &Entities) -> Resu
         let dimension = source.int("the dimension of an entity")?;
         let entity = source.int("the tag of an entity")?;
         let kind = Kind::of(source.int("the type of an element")?);
-        let kind = kind.ok_or_else(|| source.wrong("a known type of element (lines are 1, quadrilaterals 3)"))?;
+        let kind = kind
+            .ok_or_else(|| source.wrong("a known type of element (lines are 1 and 8, quadrilaterals 3, 10 and 16)"))?;
         if i32::from(kind.dimension) != dimension {
             return Err(source.wrong(format!("elements of dimension {dimension}")));
         }
@@ -146,7 +147,7 @@ fn group(raw: &Raw, entities: &Entities, key: (i32, i32), kind: Kind) -> Result<
     match entities.get(&key).map_or(&[][..], Vec::as_slice) {
         [] => Ok(0),
         [group] => Ok(*group),
-        _ if ![LINE, QUAD].contains(&kind.number) => Ok(0),
+        _ if !(kind.is_line() || kind.is_quad()) => Ok(0),
         several => {
             let what = format!("{} {}", if key.0 == 1 { "curve" } else { "surface" }, key.1);
             let names = several.iter().map(|&tag| format!("`{}`", raw.name(key.0, tag))).collect();
@@ -157,18 +158,5 @@ fn group(raw: &Raw, entities: &Entities, key: (i32, i32), kind: Kind) -> Result<
 
 fn element(source: &mut Source, raw: &mut Raw, kind: Kind, group: i32) -> Result<(), Error> {
     let number = source.size("the number of an element")?;
-    let mut node = || source.size("the number of a node");
-    match kind.number {
-        LINE => raw.lines.push(Element { number, group, nodes: [node()?, node()?] }),
-        QUAD => raw.quads.push(Element { number, group, nodes: [node()?, node()?, node()?, node()?] }),
-        _ => {
-            for _ in 0..kind.nodes {
-                node()?;
-            }
-            if !kind.usable() {
-                raw.refused.entry(kind.number).or_insert((0, number)).0 += 1;
-            }
-        }
-    }
-    Ok(())
+    super::element(raw, kind, (number, group), || source.size("the number of a node"))
 }

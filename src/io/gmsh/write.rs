@@ -4,7 +4,9 @@ use std::collections::HashSet;
 use std::fmt::Write;
 use std::path::Path;
 
+use super::{LINE, LINE_3, QUAD, QUAD_9};
 use crate::error::Result;
+use crate::io::middles::Middles;
 use crate::io::pending::write_text;
 use crate::mesh::Mesh;
 
@@ -49,12 +51,13 @@ fn entities(mesh: &Mesh, text: &mut String) -> std::fmt::Result {
 }
 
 fn nodes(mesh: &Mesh, text: &mut String) -> std::fmt::Result {
-    let count = mesh.nodes.len();
+    let more = Middles::of(mesh);
+    let count = mesh.nodes.len() + more.places.len();
     writeln!(text, "$Nodes\n1 {count} 1 {count}\n2 1 0 {count}")?;
     for node in 1..=count {
         writeln!(text, "{node}")?;
     }
-    for [x, y] in &mesh.nodes {
+    for [x, y] in mesh.nodes.iter().chain(&more.places) {
         // `{:?}` is the shortest text that reads back to the same bits.
         writeln!(text, "{x:?} {y:?} 0")?;
     }
@@ -68,6 +71,8 @@ fn elements(mesh: &Mesh, text: &mut String) -> std::fmt::Result {
     let largest = (0..mesh.cells.len()).map(number).max().unwrap_or(0);
     let smallest = (0..mesh.cells.len()).map(number).min().unwrap_or(0);
 
+    let middles = Middles::of(mesh);
+    let [edge_kind, cell_kind] = if middles.places.is_empty() { [LINE, QUAD] } else { [LINE_3, QUAD_9] };
     let edges = |group: usize| mesh.edges.iter().filter(move |e| e.group == group);
     let cells = |group: usize| (0..mesh.cells.len()).filter(move |&c| mesh.cell_group[c] == group);
     let curves: Vec<usize> = (0..mesh.edge_groups.len()).filter(|&g| edges(g).next().is_some()).collect();
@@ -76,18 +81,18 @@ fn elements(mesh: &Mesh, text: &mut String) -> std::fmt::Result {
     writeln!(text, "$Elements\n{blocks} {count} {smallest} {}", largest.saturating_add(mesh.edges.len() as u64))?;
     let mut line = largest;
     for group in curves {
-        writeln!(text, "1 {} 1 {}", group + 1, edges(group).count())?;
+        writeln!(text, "1 {} {edge_kind} {}", group + 1, edges(group).count())?;
         for edge in edges(group) {
             line = line.saturating_add(1);
             let [a, b] = mesh.face_nodes(edge.cell, edge.face).map(|node| node + 1);
-            writeln!(text, "{line} {a} {b}")?;
+            writeln!(text, "{line} {a} {b}{}", middles.text(edge.cell, &[edge.face]))?;
         }
     }
     for group in surfaces {
-        writeln!(text, "2 {} 3 {}", group + 1, cells(group).count())?;
+        writeln!(text, "2 {} {cell_kind} {}", group + 1, cells(group).count())?;
         for cell in cells(group) {
             let [a, b, c, d] = mesh.cells[cell].map(|node| node + 1);
-            writeln!(text, "{} {a} {b} {c} {d}", number(cell))?;
+            writeln!(text, "{} {a} {b} {c} {d}{}", number(cell), middles.text(cell, &[2, 1, 3, 0, 4]))?;
         }
     }
     writeln!(text, "$EndElements")

@@ -4,7 +4,7 @@ use super::tags::{self, Line};
 use super::{Of, Part, Tags};
 use crate::error::{Error, Place, Result};
 use crate::file::memory;
-use crate::io::gmsh::{self, Element, Kind, Raw};
+use crate::io::gmsh::{self, Element, Kind, Middles, QUAD_9, Raw};
 use crate::mesh::{BoundaryEdge, Error as MeshError, FACE_CORNERS, Mesh, faces::neighbours, links};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -88,6 +88,10 @@ pub fn nodal(mut parts: Vec<Part>, source: &Source) -> Result<Mesh> {
     }
     let bytes = (part.cells.count as u64).saturating_mul(CELL);
     memory::check(bytes).map_err(|why| source.error(why, "give fewer cells"))?;
+    if let (Some(kind), [(first, ..), ..]) = (Kind::of(QUAD_9), &part.cells.middles[..]) {
+        let (count, first) = (part.cells.middles.len(), *first as u64);
+        return Err(in_words(gmsh::Error::Element { kind, count, first }, source));
+    }
     if let Some((kind, &(count, first))) = part.cells.refused.iter().find_map(|(k, of)| Some((Kind::of(*k)?, of))) {
         return Err(in_words(gmsh::Error::Element { kind, count, first }, source));
     }
@@ -211,6 +215,9 @@ impl Groups {
         raw.nodes = points.map(|(node, x)| (node as u64, *x)).collect();
         let quads = mesh.cells.quads.iter().enumerate();
         raw.quads = quads.map(|(k, &(cell, nodes))| Element { number: cell as u64, group: group(k), nodes }).collect();
+        let middles = mesh.cells.middles.iter();
+        raw.middles = middles.map(|&(cell, edges, own)| Middles { number: cell as u64, edges, own }).collect();
+        raw.bulges.clone_from(&mesh.own_bulges);
         let line = |&(number, nodes, group): &Line| Element { number, group: of_edges[&group], nodes };
         raw.lines = lines.iter().map(line).collect();
         raw.refused.clone_from(&mesh.cells.refused);

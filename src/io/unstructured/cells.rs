@@ -1,6 +1,6 @@
 //! Cells of the files of other programs, by the kinds of VTK and XDMF.
 
-use crate::io::gmsh::{LINE, POINT, QUAD};
+use crate::io::gmsh::{LINE, LINE_3, POINT, QUAD, QUAD_9};
 use std::collections::BTreeMap;
 
 /// What is to be done with the nodes of a cell.
@@ -16,6 +16,10 @@ pub enum Shape {
     Pixel,
     /// A polygon: a quadrilateral, where it has four nodes.
     Polygon,
+    /// A quadrilateral of order 2: four corners, the middles of its edges around it, and its own where it has 9 nodes.
+    Quadratic,
+    /// A line of order 2: its ends, then its middle.
+    Line3,
     /// A quadrilateral of any degree, its corners first.
     Lagrange,
     /// A kind of Gmsh that is not used.
@@ -31,6 +35,8 @@ pub struct Cells {
     pub lines: Vec<(usize, [u64; 2])>,
     /// Number of the cell and its nodes.
     pub quads: Vec<(usize, [u64; 4])>,
+    /// Of quadrilaterals of order 2: number of the cell, the middles of its edges around it, its own.
+    pub middles: Vec<(usize, [u64; 4], Option<u64>)>,
     /// Cells that cannot be used: for each kind of Gmsh how many, and the number of the first.
     pub refused: BTreeMap<i32, (usize, u64)>,
 }
@@ -48,6 +54,11 @@ impl Cells {
             (Shape::Quad | Shape::Polygon | Shape::Lagrange, &[a, b, c, d]) => self.quads.push((number, [a, b, c, d])),
             (Shape::Pixel, &[a, b, c, d]) => self.quads.push((number, [a, b, d, c])),
             (Shape::Lagrange, &[a, b, c, d, ..]) if straight => self.quads.push((number, [a, b, c, d])),
+            (Shape::Line3, &[a, b, _]) => self.lines.push((number, [a, b])),
+            (Shape::Quadratic | Shape::Lagrange, &[a, b, c, d, e, f, g, h, ref own @ ..]) if own.len() < 2 => {
+                self.quads.push((number, [a, b, c, d]));
+                self.middles.push((number, [e, f, g, h], own.first().copied()));
+            }
             _ => self.refuse(shape.kind(nodes.len()), number),
         }
     }
@@ -65,6 +76,8 @@ impl Shape {
             Shape::Line => LINE,
             Shape::Quad | Shape::Pixel => QUAD,
             Shape::Polygon => TRIANGLE,
+            Shape::Quadratic => QUAD_9,
+            Shape::Line3 => LINE_3,
             // Those of order 3 to 5 have 16, 25, 36 nodes.
             Shape::Lagrange => match nodes {
                 16 => 36,
@@ -78,8 +91,8 @@ impl Shape {
 }
 
 const TRIANGLE: i32 = 2;
-const QUAD_9: i32 = 10;
-const QUAD_8: i32 = 16;
+/// A quadrilateral with two curved edges, of which nothing more is known.
+const QUAD_6: i32 = 16;
 
 /// The shape of a cell by its type in VTK.
 pub fn of_vtk(kind: u64) -> Option<Shape> {
@@ -94,14 +107,15 @@ pub fn of_vtk(kind: u64) -> Option<Shape> {
         11 | 12 => Shape::Other(5),
         13 => Shape::Other(6),
         14 => Shape::Other(7),
-        21 | 35 | 60 | 68 => Shape::Other(8),
+        21 => Shape::Line3,
+        35 | 60 | 68 => Shape::Other(LINE_3),
         22 | 34 | 61 | 69 => Shape::Other(9),
-        23 | 30 => Shape::Other(QUAD_8),
+        23 | 28 => Shape::Quadratic,
+        30 => Shape::Other(QUAD_6),
         24 | 71 => Shape::Other(11),
         25 | 33 => Shape::Other(17),
         26 | 31 | 32 => Shape::Other(18),
         27 => Shape::Other(19),
-        28 => Shape::Other(QUAD_9),
         29 | 72 => Shape::Other(12),
         70 => Shape::Lagrange,
         73 => Shape::Other(13),
@@ -122,10 +136,10 @@ pub fn of_xdmf(name: &str) -> Option<(Shape, Option<usize>)> {
         "pyramid" => (Shape::Other(7), Some(5)),
         "wedge" => (Shape::Other(6), Some(6)),
         "hexahedron" => (Shape::Other(5), Some(8)),
-        "edge_3" => (Shape::Other(8), Some(3)),
+        "edge_3" => (Shape::Line3, Some(3)),
         "triangle_6" => (Shape::Other(9), Some(6)),
-        "quadrilateral_8" | "quad_8" => (Shape::Other(QUAD_8), Some(8)),
-        "quadrilateral_9" | "quad_9" => (Shape::Other(QUAD_9), Some(9)),
+        "quadrilateral_8" | "quad_8" => (Shape::Quadratic, Some(8)),
+        "quadrilateral_9" | "quad_9" => (Shape::Quadratic, Some(9)),
         "tetrahedron_10" => (Shape::Other(11), Some(10)),
         "hexahedron_27" => (Shape::Other(12), Some(27)),
         _ => return None,
@@ -144,10 +158,10 @@ pub fn of_mixed(number: u64) -> Option<(Shape, Option<usize>)> {
         7 => (Shape::Other(7), Some(5)),
         8 => (Shape::Other(6), Some(6)),
         9 => (Shape::Other(5), Some(8)),
-        34 => (Shape::Other(8), Some(3)),
-        35 => (Shape::Other(QUAD_9), Some(9)),
+        34 => (Shape::Line3, Some(3)),
+        35 => (Shape::Quadratic, Some(9)),
         36 => (Shape::Other(9), Some(6)),
-        37 => (Shape::Other(QUAD_8), Some(8)),
+        37 => (Shape::Quadratic, Some(8)),
         38 => (Shape::Other(11), Some(10)),
         39 => (Shape::Other(19), Some(13)),
         40 => (Shape::Other(18), Some(15)),

@@ -12,6 +12,7 @@ pub use assemble::{Source, assemble, nodal};
 pub use cells::{Cells, Shape, of_mixed, of_vtk, of_xdmf};
 
 use crate::error::Result;
+use crate::mesh::map::Bulge;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -54,6 +55,8 @@ pub struct Part<'a> {
     /// Set where it is an export of this program in which each cell has points of its own: the edges of groups as cell, local
     /// face, number of the group.
     pub own_edges: Option<Vec<[usize; 3]>>,
+    /// How its cells are curved ([`Bulge`]), where such an export says that; else empty.
+    pub own_bulges: Vec<Bulge>,
     /// The file beside it that has the lines.
     pub facets: Option<String>,
 }

@@ -11,6 +11,8 @@ use std::rc::Rc;
 
 /// The array of `FieldData` that only exports of this program have: edges of groups as cell, local face, number of the group.
 pub const EDGES: &str = "dgmpm_edges";
+/// The name of the array of how the edges of cells are curved, 10 numbers a cell: [`crate::mesh::Mesh::bulges`].
+pub const CURVES: &str = "dgmpm_curves";
 
 /// What is read of a file.
 const SECTIONS: &[Section] = &[Section::Place, Section::Cells, Section::CellData, Section::FieldData];
@@ -76,6 +78,9 @@ fn field(document: &Document, array: &Array, part: &mut Part) -> std::result::Re
             document.values(array)?.into_iter().map(|x| whole(x).map(|x| x as usize)).collect();
         let values = values.ok_or_else(|| format!("array `{EDGES}` has what is no whole number from 0"))?;
         part.own_edges = Some(values.as_chunks::<3>().0.to_vec());
+    } else if array.name == CURVES && array.components == 10 {
+        let values = document.values(array)?;
+        part.own_bulges = values.as_chunks::<2>().0.as_chunks::<5>().0.to_vec();
     } else if array.number.is_whole() && array.tuples.and_then(|rows| rows.checked_mul(array.components)) == Some(2) {
         let [number, dimension] = document.values(array)?[..] else { return Ok(()) };
         let of = match dimension {

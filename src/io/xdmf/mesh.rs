@@ -5,14 +5,15 @@ use std::path::Path;
 use super::{Item, Written, Xml, attribute, companion, file_name, names, uniform_grid, write_document};
 use crate::error::Result;
 use crate::io::hdf5;
-use crate::mesh::{FACE_CORNERS, Mesh};
+use crate::io::middles::Middles;
+use crate::mesh::Mesh;
 
 /// The file of the boundary beside that of the mesh.
 const BOUNDARY: &str = "boundary.xdmf";
 /// Names of the grids of mesh tags.
 const TAGS: [&str; 2] = ["cell_tags", "facet_tags"];
 
-/// Writes the bilinear mesh as grid `mesh`: cells counter-clockwise, and the cell attribute `group` (index of the
+/// Writes the mesh as grid `mesh`: cells counter-clockwise (of 9 nodes in the order of VTK where the mesh is curved), and the cell attribute `group` (index of the
 /// material group). `meshio.read` reads it, with the names of the groups as `field_data`, and DOLFINx by `read_mesh()` and
 /// `read_meshtags(mesh, "mesh")`. It says that [`write_boundary`] writes `boundary.xdmf` beside it.
 pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<()> {
@@ -37,12 +38,12 @@ pub fn write_all(path: &Path, mesh: &Mesh) -> Result<()> {
     let h5 = companion(path)?;
     hdf5::create_sealed(&h5, hdf5::Kept::Named, |file| {
         hdf5::put_program(file)?;
-        grid.put(file, mesh)?;
+        grid.put(file)?;
         lines.put_cells(file)
     })?;
     let file = file_name(&h5);
     write_document(path, |xml| {
-        uniform_grid(xml, (&file, "mesh"), (grid.groups.len(), 4, mesh.nodes.len()), |xml| {
+        uniform_grid(xml, (&file, "mesh"), (grid.groups.len(), grid.size, grid.points.len()), |xml| {
             numbers.write(xml, mesh, None)
         })?;
         tags(xml, &file, ("mesh", TAGS[0]), &grid)?;
@@ -59,6 +60,8 @@ struct Grid {
     size: usize,
     cells: Vec<i64>,
     groups: Vec<i32>,
+    /// X of the nodes of the mesh and, of a curved one, of the middles.
+    points: Vec<[f64; 2]>,
 }
 
 /// The numbers of the groups of a mesh.
@@ -86,22 +89,31 @@ impl Numbers {
 
 impl Grid {
     fn of_cells(mesh: &Mesh, numbers: &Numbers, name: &'static str, data: &'static str) -> Self {
-        let cells = mesh.cells.as_flattened().iter().map(|&n| n as i64).collect();
         let groups = mesh.cell_group.iter().map(|&group| numbers.cells[group]).collect();
-        Self { name, data, size: 4, cells, groups }
+        let middles = Middles::of(mesh);
+        let more = |cell: usize| middles.of.get(cell).map(|own| [2, 1, 3, 0, 4].map(|k| own[k]));
+        let nodes = |cell: usize| mesh.cells[cell].into_iter().chain(more(cell).into_iter().flatten());
+        let cells = (0..mesh.cells.len()).flat_map(nodes).map(|node| node as i64).collect();
+        let size = if middles.of.is_empty() { 4 } else { 9 };
+        Self { name, data, size, cells, groups, points: points(mesh, &middles) }
     }
 
     fn of_edges(mesh: &Mesh, numbers: &Numbers, name: &'static str, data: &'static str) -> Self {
-        let corners = |e: &crate::mesh::BoundaryEdge| FACE_CORNERS[e.face].map(|k| mesh.cells[e.cell][k] as i64);
-        let cells = mesh.edges.iter().flat_map(corners).collect();
+        let middles = Middles::of(mesh);
+        let nodes = |e: &crate::mesh::BoundaryEdge| {
+            let middle = middles.of.get(e.cell).map(|own| own[e.face]);
+            mesh.face_nodes(e.cell, e.face).into_iter().chain(middle)
+        };
+        let cells = mesh.edges.iter().flat_map(nodes).map(|node| node as i64).collect();
         let groups = mesh.edges.iter().map(|edge| numbers.edges[edge.group]).collect();
-        Self { name, data, size: 2, cells, groups }
+        let size = if middles.of.is_empty() { 2 } else { 3 };
+        Self { name, data, size, cells, groups, points: points(mesh, &middles) }
     }
 
     /// Writes its arrays, the points too.
-    fn put(&self, file: &hdf5_metno::File, mesh: &Mesh) -> hdf5_metno::Result<()> {
+    fn put(&self, file: &hdf5_metno::File) -> hdf5_metno::Result<()> {
         let geometry = format!("{}/geometry", self.name);
-        hdf5::put(file, &geometry, &[mesh.nodes.len(), 2], mesh.nodes.as_flattened())?;
+        hdf5::put(file, &geometry, &[self.points.len(), 2], self.points.as_flattened())?;
         self.put_cells(file)
     }
 
@@ -113,17 +125,22 @@ impl Grid {
     }
 }
 
+/// X of the nodes of a mesh and of its middles.
+fn points(mesh: &Mesh, middles: &Middles) -> Vec<[f64; 2]> {
+    mesh.nodes.iter().chain(&middles.places).copied().collect()
+}
+
 /// Writes one grid of cells with their groups.
 fn write_one(path: &Path, mesh: &Mesh, numbers: &Numbers, grid: &Grid, facets: Option<&str>) -> Result<()> {
     let h5 = companion(path)?;
     hdf5::create_sealed(&h5, hdf5::Kept::Named, |file| {
         hdf5::put_program(file)?;
-        grid.put(file, mesh)
+        grid.put(file)
     })?;
     let file = file_name(&h5);
     let (count, place) = (grid.groups.len(), format!("{}/{}", grid.name, grid.data));
     write_document(path, |xml| {
-        uniform_grid(xml, (&file, grid.name), (count, grid.size, mesh.nodes.len()), |xml| {
+        uniform_grid(xml, (&file, grid.name), (count, grid.size, grid.points.len()), |xml| {
             numbers.write(xml, mesh, facets)?;
             attribute(xml, grid.data, "Scalar", "Cell", &groups(&file, &place, &[count]))
         })

@@ -98,7 +98,12 @@ fn uniform_grid(
 
 /// The cells of a grid, of `nodes` nodes each.
 fn topology(xml: &mut Xml, nodes: usize, cells: usize, values: &Item) -> Written {
-    let kind = if nodes == 2 { "Polyline" } else { "Quadrilateral" };
+    let kind = match nodes {
+        2 => "Polyline",
+        3 => "Edge_3",
+        9 => "Quadrilateral_9",
+        _ => "Quadrilateral",
+    };
     let (count, size) = (cells.to_string(), nodes.to_string());
     let attributes = [("TopologyType", kind), ("NumberOfElements", count.as_str()), ("NodesPerElement", size.as_str())];
     xml.create_element("Topology").with_attributes(attributes).write_inner_content(|xml| item(xml, values)).map(drop)

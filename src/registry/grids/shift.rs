@@ -38,7 +38,7 @@ fn shifted(mesh: &Mesh, by: [f64; 2]) -> std::result::Result<Mesh, mesh::Error> 
         *x = [x[0] + by[0], x[1] + by[1]];
     }
     // A node that leaves its cells may leave them all counter-clockwise: turned cells are refused, too.
-    let turned = (0..out.cells.len()).find(|&cell| map::h_e(&out.corners(cell)) <= 0.0);
+    let turned = (0..out.cells.len()).find(|&cell| map::h_e(&out.map(cell)) <= 0.0);
     match turned {
         Some(cell) => Err(mesh::Error::Turned { cell: out.number(cell), at: out.corners(cell)[0] }),
         None => out.checked(),

@@ -13,7 +13,7 @@ impl<const M: usize> Work for Project<'_, M> {
     fn run<L: Lanes>(self) {
         let Self(operators, u) = self;
         let mut nodes = volume::Arrays::new(M, 6, 0);
-        let (line, metric) = (&operators.line, &operators.geometry.blocks[0]);
+        let (line, metric) = (&operators.line, operators.geometry.of(0));
         let masses = Masses::<'_, M> { line, metric, masses: &mut nodes.masses };
         let arrays = Arrays { weighted: &mut nodes.weighted, coefficients: &mut nodes.coefficients };
         project::<L, M>(operators.curl_free.as_ref().unwrap(), 0, L::splat(1.0), masses, arrays, u);
