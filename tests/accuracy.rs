@@ -159,10 +159,10 @@ fn spin_and_strain(mesh: &Mesh, snapshot: &Snapshot) -> [f64; 2] {
         let map = mesh.map(cell);
         for a in 0..nodes {
             let xi = [points[a / m], points[a % m]];
-            let weight = weights[a / m] * weights[a % m] * map::determinant(&map::jacobian(&corners, xi));
+            let weight = weights[a / m] * weights[a % m] * map::determinant(&map::jacobian(&map, xi));
             let u = |k: usize| snapshot.u[(6 * cell + k) * nodes + a];
             let moved = |k: usize| snapshot.displacement[(2 * cell + k) * nodes + a];
-            let x = map::position(&corners, xi);
+            let x = map::position(&map, xi);
             let arm = [x[0] + moved(0) - 0.5, x[1] + moved(1) - 0.5];
             spin += weight * (arm[0] * u(5) - arm[1] * u(4));
             let (c11, c22) = (u(0).powi(2) + u(2).powi(2) - 1.0, u(1).powi(2) + u(3).powi(2) - 1.0);

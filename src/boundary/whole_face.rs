@@ -11,6 +11,8 @@ use crate::tensor::{cross, dot, minus};
 pub struct WholeFace<'a> {
     /// Its ends in the initial configuration, in the direction of its points, m.
     pub ends: [[f64; 2]; 2],
+    /// Where it is curved the vector d from the middle of its chord to its own, m: X(s) = a + s (b - a) + 4 s (1 - s) d.
+    pub bulge: [f64; 2],
     /// Its points.
     pub points: &'a [FacePoint],
     /// What the cell shows at each.
@@ -70,7 +72,13 @@ fn along(values: &[f64], points: &[[f64; 2]]) -> [f64; 2] {
 }
 
 impl WholeFace<'_> {
-    /// The length in the initial configuration, m.
+    /// dX/ds in the initial configuration, m.
+    fn edge(&self, s: f64) -> [f64; 2] {
+        let ([a, b], d) = (self.ends, self.bulge);
+        [0, 1].map(|k| b[k] - a[k] + (4.0 - 8.0 * s) * d[k])
+    }
+
+    /// The length of its chord in the initial configuration, m.
     pub fn length(&self) -> f64 {
         let [a, b] = self.ends;
         (b[0] - a[0]).hypot(b[1] - a[1])
@@ -146,14 +154,16 @@ impl WholeFace<'_> {
 
     /// The place of the face that is nearest to a point; none where that lies beyond an end at which the boundary does not go on.
     fn nearest(&self, x: [f64; 2], moved: &[[f64; 2]]) -> Option<Place> {
-        let [a, b] = self.ends;
-        let edge = minus(b, a);
-        let mut out = Place { s: 0.5, from: [0.0; 2], slope: edge, over: false };
+        let ([a, b], d) = (self.ends, self.bulge);
+        let chord = minus(b, a);
+        let mut out = Place { s: 0.5, from: [0.0; 2], slope: chord, over: false };
         for _ in 0..=NEWTON {
             let gradient = along(&self.basis.derivatives(out.s), moved);
+            let edge = self.edge(out.s);
             out.slope = [0, 1].map(|k| edge[k] + gradient[k]);
             let place = along(&self.basis.values(out.s), moved);
-            out.from = [0, 1].map(|k| x[k] - (a[k] + out.s * edge[k] + place[k]));
+            let bump = 4.0 * out.s * (1.0 - out.s);
+            out.from = [0, 1].map(|k| x[k] - (a[k] + out.s * chord[k] + bump * d[k] + place[k]));
             let next = out.s + dot(out.from, out.slope) / dot(out.slope, out.slope).max(f64::MIN_POSITIVE);
             let beyond = self.beyond.map(|on| if on.is_some() { JOINED } else { BEYOND });
             out.over = next < -beyond[0] && out.s <= 0.0 || next > 1.0 + beyond[1] && out.s >= 1.0;
@@ -176,14 +186,14 @@ impl WholeFace<'_> {
     /// The current outward normal at a point.
     pub(super) fn normal_at(&self, point: usize, moved: &[[f64; 2]]) -> [f64; 2] {
         let gradient = along(&self.basis.derivatives(self.basis.nodes[point]), moved);
-        let edge = minus(self.ends[1], self.ends[0]);
+        let edge = self.edge(self.basis.nodes[point]);
         self.outward([edge[0] + gradient[0], edge[1] + gradient[1]])
     }
 
     /// The current direction of the face away from an end, a unit vector.
     pub fn direction_from(&self, end: usize, moved: &[[f64; 2]]) -> [f64; 2] {
         let gradient = along(&self.basis.derivatives(end as f64), moved);
-        let edge = minus(self.ends[1], self.ends[0]);
+        let edge = self.edge(end as f64);
         let sign = if end == 0 { 1.0 } else { -1.0 };
         let slope = [0, 1].map(|k| sign * (edge[k] + gradient[k]));
         let length = slope[0].hypot(slope[1]).max(f64::MIN_POSITIVE);
@@ -207,7 +217,10 @@ impl WholeFace<'_> {
         friction: f64,
         flux: &mut [[f64; 6]],
     ) -> Vec<[f64; 2]> {
-        let weight = |i: usize| self.basis.weights[i] * self.length();
+        let weight = |i: usize| {
+            let [a, b] = self.edge(self.basis.nodes[i]);
+            self.basis.weights[i] * a.hypot(b)
+        };
         let z: Vec<_> = self.points.iter().zip(self.inside).map(|(at, inside)| at.characteristic(inside)).collect();
         let mut v: Vec<_> =
             self.points.iter().zip(self.inside).map(|(at, inside)| free::velocity(inside, at)).collect();

@@ -128,11 +128,11 @@ pub fn compare<'a>(
     let of_cell = |cell: usize| {
         let mut sums = Sums::default();
         let sum = &mut sums.errors;
-        let (corners, law) = (mesh.corners(cell), law(cell));
+        let (map, law) = (mesh.map(cell), law(cell));
         let slowness = 1.0 / law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0];
         for (&xi, weight) in xi.iter().zip(&weights) {
-            let weight = weight * map::determinant(&map::jacobian(&corners, xi)).abs();
-            let [(found_f, found_v, found_internal), (f, v, internal)] = at(cell, xi, map::position(&corners, xi));
+            let weight = weight * map::determinant(&map::jacobian(&map, xi)).abs();
+            let [(found_f, found_v, found_internal), (f, v, internal)] = at(cell, xi, map::position(&map, xi));
             let (found_p, p) = (law.response(found_f, &found_internal).piola, law.response(f, &internal).piola);
             let error_f: [f64; 4] = std::array::from_fn(|k| found_f[k] - f[k]);
             let error_v = [found_v[0] - v[0], found_v[1] - v[1]];

@@ -204,4 +204,18 @@ mod tests {
             assert!(square.checked().is_err(), "{size}");
         }
     }
+
+    #[test]
+    fn a_curved_cell_that_folds_is_refused_by_number_and_a_turned_one_takes_its_curves_along() {
+        let square = single([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+        let curved =
+            |by: f64| Mesh { bulges: vec![[[0.0; 2], [0.0; 2], [0.0, by], [0.0; 2], [0.0; 2]]], ..square.clone() };
+        assert!(curved(-0.3).checked().is_ok() && curved(0.2).checked().is_ok());
+        // The lower edge comes near the upper one: dX_2/dxi_2 = 1 - b(xi1) by at its middle is .02 at by = .98 and -.1 at 1.1.
+        assert!(matches!(curved(1.1).checked(), Err(Error::Folded { cell: 77, .. })), "{:?}", curved(1.1).checked());
+        let mut turned = curved(-0.3);
+        turned.cells[0].swap(1, 3);
+        turned.bulges[0].swap(0, 2);
+        assert_eq!(turned.checked().unwrap(), curved(-0.3));
+    }
 }

@@ -145,4 +145,29 @@ mod tests {
         // Every face has its neighbour or its group.
         links(&fine.checked().unwrap()).unwrap();
     }
+
+    #[test]
+    fn the_parts_of_a_curved_cell_lie_on_its_map() {
+        let mut mesh = rectangle([2.0, 1.0], [2, 1]).unwrap();
+        let shared = [0.1, 0.05];
+        mesh.bulges = vec![
+            [[0.0, 0.02], shared, [0.1, -0.2], [0.0; 2], [0.05, 0.03]],
+            [shared, [0.0; 2], [0.0, 0.1], [0.02, 0.1], [0.0; 2]],
+        ];
+        let fine = mesh.refined(3);
+        let area =
+            |mesh: &crate::mesh::Mesh| -> f64 { (0..mesh.cells.len()).map(|cell| map::area(&mesh.map(cell))).sum() };
+        assert!((area(&fine) - area(&mesh)).abs() < 1e-14);
+        for cell in 0..2 {
+            for (i, j) in (0..3).flat_map(|j| (0..3).map(move |i| (i, j))) {
+                let part = fine.map(9 * cell + 3 * j + i);
+                for xi in [[0.2, 0.7], [0.9, 0.1], [0.5, 0.0], [0.0, 0.3]] {
+                    let whole = [(i as f64 + xi[0]) / 3.0, (j as f64 + xi[1]) / 3.0];
+                    let (x, y) = (map::position(&part, xi), map::position(&mesh.map(cell), whole));
+                    assert!((x[0] - y[0]).hypot(x[1] - y[1]) < 1e-15, "cell {cell}, part {i} {j}");
+                }
+            }
+        }
+        links(&fine.checked().unwrap()).unwrap();
+    }
 }

@@ -193,7 +193,8 @@ impl Maps {
 
     fn edge(&self, mesh: &Mesh, solution: &Solution, cell: usize, face: usize) -> Vec<[f64; 2]> {
         let [a, b] = FACE_CORNERS[face].map(|corner| map::CORNER_XI[corner]);
-        let pieces = if self.is_initial { 1 } else { 2 * (solution.basis.len() - 1).max(1) };
+        let is_straight = self.is_initial && mesh.map(cell).bulge.is_none();
+        let pieces = if is_straight { 1 } else { 2 * (solution.basis.len() - 1).max(1) };
         let along = (0..=pieces).map(|k| k as f64 / pieces as f64);
         let xi = along.map(|s| [0, 1].map(|k| a[k] + s * (b[k] - a[k])));
         xi.map(|xi| self.position(mesh, cell, xi, &solution.at(cell, xi))).collect()

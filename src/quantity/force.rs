@@ -84,9 +84,16 @@ impl Force {
         let at = |(i, s): (usize, &f64)| FacePoint { x: place(*s), normal: metric.at_face_of(lane, face, i).0, medium };
         let points: Vec<_> = basis.nodes.iter().enumerate().map(at).collect();
         let mut own: Vec<_> = points.iter().map(|_| memory.next().unwrap_or_default()).collect();
+        let bulge = map.bulge.map_or([0.0; 2], |bulge| bulge[face]);
         let (condition, mut flux) = (&scheme.boundaries[self.group], vec![[0.0; 6]; points.len()]);
-        let whole =
-            WholeFace { ends: [place(0.0), place(1.0)], points: &points, inside: &inside, basis, beyond: [None; 2] };
+        let whole = WholeFace {
+            ends: [place(0.0), place(1.0)],
+            bulge,
+            points: &points,
+            inside: &inside,
+            basis,
+            beyond: [None; 2],
+        };
         if !condition.sees_faces() || !condition.face_flux(&whole, &when, &mut own.concat(), &mut flux) {
             for (i, flux) in flux.iter_mut().enumerate() {
                 *flux = condition.flux(&inside[i], &points[i], &when, &mut own[i]);

@@ -19,6 +19,18 @@ pub(super) struct Met<'a> {
     pub traces: &'a Traces<'a>,
 }
 
+/// The unit normal of a face where its polynomials have these values; that of a straight face to the bit.
+fn mean_normal(values: &[f64], normals: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+    let all: Vec<[f64; 2]> = normals.collect();
+    if all.iter().all(|normal| *normal == all[0]) {
+        return all[0];
+    }
+    let sum = |k: usize| values.iter().zip(&all).map(|(value, normal)| value * normal[k]).sum::<f64>();
+    let [a, b] = [sum(0), sum(1)];
+    let size = a.hypot(b);
+    [a / size, b / size]
+}
+
 impl Block<'_> {
     /// The flux at a point of a face that meets others: with the traction t that they leave there and the push q of overlaps, t* = t + q,
     /// v* = v + Z^-1 (t - T). None where it meets nothing.
@@ -102,7 +114,9 @@ impl Block<'_> {
         let (block, numbers) = (face.face / FACES, traces.faces(face.face, 1, m * width));
         let of = |k: usize| -> f64 { (0..m).map(|i| at.values[side][i] * numbers[i * width + k].0[face.lane]).sum() };
         let law = &scheme.laws[scheme.operators.blocks.material[block]];
-        let normal = scheme.operators.geometry.blocks[block].lane(face.lane).normal(face.face % FACES);
+        let metric = scheme.operators.geometry.of(block);
+        let normals = (0..m).map(|i| metric.at_face_of(face.lane, face.face % FACES, i).0);
+        let normal = mean_normal(&at.values[side][..m], normals);
         let c = law.speeds([of(0), of(1), of(2), of(3)], normal);
         let per_length = 1.0 / at.stretch[side];
         Side {

@@ -20,6 +20,8 @@ struct Face {
     place: [usize; 3],
     /// Ends in the initial configuration, m.
     ends: [[f64; 2]; 2],
+    /// How it is curved, see [`WholeFace`].
+    bulge: [f64; 2],
     /// Length h_e of its cell, m.
     h: f64,
     /// Its points.
@@ -130,11 +132,12 @@ impl Face {
         let (geometry, line) = (&scheme.operators.geometry, &scheme.operators.line);
         let stage = Stage { number: 0, times: &[], row: &[], dt: 0.0, elapsed: 0.0, obstacles: None };
         let block = Block { scheme, stage: &stage, number };
-        let corners = geometry.map_of(number, lane);
+        let map = geometry.map_of(number, lane);
         Self {
             group,
             place,
-            ends: [0.0, 1.0].map(|s| map::position(&corners, on_face(face, s))),
+            ends: [0.0, 1.0].map(|s| map::position(&map, on_face(face, s))),
+            bulge: map.bulge.map_or([0.0; 2], |bulge| bulge[face]),
             h: geometry.blocks[number].lane(lane).h,
             points: (0..line.m).map(|point| block.face_point(face, point, lane)).collect(),
             next: [None; 2],
@@ -145,7 +148,7 @@ impl Face {
     /// The face, without what its cell shows.
     fn whole<'a>(&'a self, scheme: &'a Scheme) -> WholeFace<'a> {
         let basis = &scheme.operators.line.basis;
-        WholeFace { ends: self.ends, points: &self.points, inside: &[], basis, beyond: self.beyond }
+        WholeFace { ends: self.ends, bulge: self.bulge, points: &self.points, inside: &[], basis, beyond: self.beyond }
     }
 
     /// The memory of its points in a state; none of a state that was not stepped yet.

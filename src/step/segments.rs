@@ -42,6 +42,8 @@ pub(super) struct Face {
     pub lane: usize,
     /// Its ends in the initial configuration, in the direction of its points, m.
     pub ends: [[f64; 2]; 2],
+    /// Where it is curved the vector from the middle of its chord to its own, m.
+    pub bulge: [f64; 2],
     /// h_e of its cell, m.
     pub h: f64,
     /// rho0 c_p^2/h_e at F = 1, Pa/m.
@@ -71,11 +73,12 @@ impl Face {
 
 impl Face {
     pub fn new(operators: &Operators, law: &Law, [block, face, lane]: [usize; 3]) -> Self {
-        let corners = operators.geometry.map_of(block, lane);
-        let ends = [0.0, 1.0].map(|s| map::position(&corners, on_face(face, s)));
+        let map = operators.geometry.map_of(block, lane);
+        let ends = [0.0, 1.0].map(|s| map::position(&map, on_face(face, s)));
+        let bulge = map.bulge.map_or([0.0; 2], |bulge| bulge[face]);
         let h = operators.geometry.blocks[block].lane(lane).h;
         let speed = law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0];
-        Self { face: FACES * block + face, lane, ends, h, stiffness: law.density() * speed * speed / h }
+        Self { face: FACES * block + face, lane, ends, bulge, h, stiffness: law.density() * speed * speed / h }
     }
 }
 
@@ -127,6 +130,8 @@ pub(super) struct Chord {
     direction: [f64; 2],
     /// In the initial configuration, m.
     length: f64,
+    /// b - a and the bulge d of its curve in the initial configuration, X(s) = a + s (b - a) + 4 s (1 - s) d; none where it is straight.
+    curve: Option<[[f64; 2]; 2]>,
     /// Whether its points run the other way.
     reversed: bool,
 }
@@ -139,7 +144,15 @@ impl Chord {
         let current = d[0].hypot(d[1]).max(f64::MIN_POSITIVE);
         let [a, b] = face.ends;
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-        Self { from, to, direction: d.map(|d| d / current), length, reversed }
+        let curve = (face.bulge != [0.0; 2]).then(|| [[b[0] - a[0], b[1] - a[1]], face.bulge]);
+        Self { from, to, direction: d.map(|d| d / current), length, curve, reversed }
+    }
+
+    /// |dX/ds| in the initial configuration, m.
+    fn length_at(&self, s: f64) -> f64 {
+        let Some([edge, bulge]) = self.curve else { return self.length };
+        let [a, b] = [0, 1].map(|k| edge[k] + (4.0 - 8.0 * s) * bulge[k]);
+        a.hypot(b)
     }
 
     /// The unit normal out of the body, which is to the left.
@@ -154,7 +167,7 @@ impl Chord {
         if self.reversed { 1.0 - s } else { s }
     }
 
-    /// l_i(s) and |dx/ds| along `axis` at the point of the face whose coordinate along `axis` is `x`: then both sides of a segment
+    /// l_i(s) and |dx/ds| along `axis` over |dX/ds| at the point of the face whose coordinate along `axis` is `x`: then both sides of a segment
     /// stand opposite each other along the normal, and a pressure between them has no moment. (With s of the chord two discs that
     /// meet obliquely gain 1.9 % of their angular momentum at S2, with this they lose .16 %.)
     fn reach(&self, x: f64, axis: [f64; 2], points: &[[f64; 2]], basis: &Lagrange) -> (Vec<f64>, f64) {
@@ -169,9 +182,9 @@ impl Chord {
         }
         // A face that folds over has no such point.
         if (s - first).abs() > FOLDED || slope.abs() < FOLDED * chord {
-            return (basis.values(first), chord);
+            return (basis.values(first), chord / self.length_at(first));
         }
-        (basis.values(s), slope.abs())
+        (basis.values(s), slope.abs() / self.length_at(s))
     }
 }
 
@@ -196,10 +209,10 @@ pub(super) fn shared(chords: &[Chord; 2], points: [&[[f64; 2]; MOST]; 2], basis:
         let x = low + (high - low) * node;
         let mut at = [[0.0; 2]; 2];
         for (side, chord) in chords.iter().enumerate() {
-            let (values, slope) = chord.reach(x, axis, points[side], basis);
+            let (values, stretch) = chord.reach(x, axis, points[side], basis);
             at[side] = along(&values, points[side]);
             out.values[side][..values.len()].copy_from_slice(&values);
-            out.stretch[side] = slope / chord.length;
+            out.stretch[side] = stretch;
         }
         out.weight = (high - low) * weight;
         out.gap = dot([at[1][0] - at[0][0], at[1][1] - at[0][1]], normal);
@@ -228,9 +241,10 @@ pub(super) fn whole(
     };
     let flip = far(1) < far(0);
     for (i, (out, weight)) in out.points.iter_mut().zip(&basis.weights).enumerate() {
+        let length = a.length_at(basis.nodes[i]);
         let j = if flip { basis.len() - 1 - i } else { i };
         (out.values[0][i], out.values[1][j]) = (1.0, 1.0);
-        (out.weight, out.stretch) = (a.length * weight, [1.0; 2]);
+        (out.weight, out.stretch) = (length * weight, [1.0; 2]);
         out.gap = dot([points[1][j][0] - points[0][i][0], points[1][j][1] - points[0][i][1]], normal);
     }
     out

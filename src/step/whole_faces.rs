@@ -40,7 +40,8 @@ impl Block<'_> {
         let corners = scheme.operators.geometry.map_of(self.number, lane);
         let ends = [0.0, 1.0].map(|s| map::position(&corners, on_face(face, s)));
         let beyond = self.stage.obstacles.map_or([None; 2], |all| all.beyond([self.number, face, lane]));
-        let whole = WholeFace { ends, points: &points, inside: &inside, basis: &line.basis, beyond };
+        let bulge = corners.bulge.map_or([0.0; 2], |bulge| bulge[face]);
+        let whole = WholeFace { ends, bulge, points: &points, inside: &inside, basis: &line.basis, beyond };
         let when = Moment { times: self.stage.times, dt: self.factor() };
         let memory = scheme.boundary_memory.of_face(memory, [self.number, face, lane], line.m);
         let mut flux = [[0.0; UNKNOWNS]; MOST];

@@ -255,7 +255,7 @@ fn internal_variables_are_bit_for_bit_what_they_were_at_the_points_that_are_kept
         assert_eq!((count, state.internal.len() % cloud.len()), (5, 0));
         let of = |cell: usize| {
             let map = mesh.map(cell);
-            cloud.of(cell).iter().map(move |&xi| dgmpm::parts::mesh::map::position(&corners, xi))
+            cloud.of(cell).iter().map(move |&xi| dgmpm::parts::mesh::map::position(&map, xi))
         };
         let places: Vec<[f64; 2]> = (0..mesh.cells.len()).flat_map(of).collect();
         places.into_iter().zip(state.internal.chunks(5).map(<[f64]>::to_vec).collect::<Vec<_>>()).collect::<Vec<_>>()

@@ -224,7 +224,7 @@ proptest! {
         let f: [f64; 4] = std::array::from_fn(|k| f[k] + [1.0, 0.0, 0.0, 1.0][k]);
         let inside = v.map(|v| Trace { f, v, t: times(law.stress(f), n), c: law.speeds(f, n) });
         let points = [0, 1, 2].map(|i| FacePoint { x: [basis.nodes[i], 0.0], ..at(n, 1.0) });
-        let face = WholeFace { ends: [[0.0; 2], [1.0, 0.0]], points: &points, inside: &inside, basis: &basis, beyond: [None; 2] };
+        let face = WholeFace { ends: [[0.0; 2], [1.0, 0.0]], bulge: [0.0; 2], points: &points, inside: &inside, basis: &basis, beyond: [None; 2] };
         let (mut memory, mut flux) = ([0.0; 6], [[0.0; 6]; 3]);
         let obstacle = spike(place, depth, friction);
         // It comes at the face where v* of the free face goes down, unless a point holds it already.
@@ -253,6 +253,7 @@ fn a_tip_acts_on_the_side_of_a_thin_body_that_it_comes_to_and_not_before_it_is_t
         let points = [0, 1, 2].map(|i| FacePoint { x: [basis.nodes[i], 0.0], ..at(n, 1.0) });
         let face = WholeFace {
             ends: [[0.0; 2], [1.0, 0.0]],
+            bulge: [0.0; 2],
             points: &points,
             inside: &inside,
             basis: &basis,

@@ -116,7 +116,7 @@ fn the_walk_finds_what_the_hierarchy_finds_to_the_bit_from_any_cell() {
         for (k, &x) in points.iter().enumerate() {
             let expected = locator.find(x);
             for from in [0, (k * 7) % mesh.cells.len(), mesh.cells.len() - 1, usize::MAX] {
-                walked += usize::from(locator.walk.find(from, x).is_some());
+                walked += usize::from(locator.walk.find(from, x, &[]).is_some());
                 assert_eq!(locator.find_from(from, x), expected, "{x:?} from {from}");
             }
         }
