@@ -21,6 +21,9 @@ impl Mesh {
             row("mean scaled Jacobian", format!("{:.4}", quality.mean_scaled_jacobian)),
             row("largest aspect", format!("{:.3} in cell {}", quality.aspect.0, self.number(quality.aspect.1))),
         ];
+        if self.curved_cells() > 0 {
+            rows.insert(2, row("cells with curved edges", self.curved_cells().to_string()));
+        }
         for (group, name) in self.groups.iter().enumerate() {
             let count = self.cell_group.iter().filter(|&&g| g == group).count();
             rows.push(row(format!("cells of `{name}`"), count.to_string()));

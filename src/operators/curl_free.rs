@@ -286,13 +286,17 @@ fn mass(corners: &CellMap, line: &Line, a: usize) -> f64 {
 }
 
 /// Columns [direction][node]: gradients in X of the monomials of Q_N in xi and of P_(N+1) in (X - Xc)/h.
-fn gradients(corners: &CellMap, line: &Line) -> Vec<Vec<f64>> {
-    let (m, centre, h) = (line.m as i32, map::position(corners, [0.5, 0.5]), map::h_e(corners));
+///
+/// In a curved cell the monomials beyond degree 1 are taken of the place that xi has in the cell of the same corners with straight
+/// edges. Of X itself they would span nearly all fields (N = 3: 27 of 32), and nothing would be left to control: at diag(.7, 1) a ring
+/// grew by 5.6 c/h for 1.5 with straight edges.
+fn gradients(cell: &CellMap, line: &Line) -> Vec<Vec<f64>> {
+    let (m, centre, h) = (line.m as i32, map::position(cell, [0.5, 0.5]), map::h_e(cell));
     let nodes = line.nodes();
     let mut columns = Vec::new();
     for (i, j) in (0..m).flat_map(|i| (0..m).map(move |j| (i, j))).filter(|&(i, j)| i + j > 0) {
         columns.push(stack(nodes.iter().map(|&xi| {
-            let inverse = map::inverse(&map::jacobian(corners, xi));
+            let inverse = map::inverse(&map::jacobian(cell, xi));
             // Monomials about the middle are better conditioned and span the same space.
             let g = monomial_gradient([xi[0] - 0.5, xi[1] - 0.5], i, j);
             [0, 1].map(|axis| g[0] * inverse[0][axis] + g[1] * inverse[1][axis])
@@ -300,11 +304,22 @@ fn gradients(corners: &CellMap, line: &Line) -> Vec<Vec<f64>> {
     }
     for (i, j) in (0..=m).flat_map(|i| (0..=m - i).map(move |j| (i, j))).filter(|&(i, j)| i + j > 0) {
         columns.push(stack(nodes.iter().map(|&xi| {
-            let x = map::position(corners, xi);
+            if cell.bulge.is_some() && i + j > 1 {
+                return pulled(cell, xi, |x| monomial_gradient([(x[0] - centre[0]) / h, (x[1] - centre[1]) / h], i, j));
+            }
+            let x = map::position(cell, xi);
             monomial_gradient([(x[0] - centre[0]) / h, (x[1] - centre[1]) / h], i, j)
         })));
     }
     columns
+}
+
+/// The gradient in X of a function of the place that xi has in the cell with straight edges; `gradient` is that in this place.
+fn pulled(cell: &CellMap, xi: [f64; 2], gradient: impl Fn([f64; 2]) -> [f64; 2]) -> [f64; 2] {
+    let g = gradient(map::position(&cell.corners, xi));
+    let (straight, inverse) = (map::jacobian(&cell.corners, xi), map::inverse(&map::jacobian(cell, xi)));
+    let along = [0, 1].map(|b| g[0] * straight[0][b] + g[1] * straight[1][b]);
+    [0, 1].map(|axis| along[0] * inverse[0][axis] + along[1] * inverse[1][axis])
 }
 
 fn stack(gradients: impl Iterator<Item = [f64; 2]>) -> Vec<f64> {
@@ -323,7 +338,7 @@ mod tests {
     use super::*;
     use crate::mesh::{BoundaryEdge, links, rectangle};
 
-    /// Eight cells: parallelograms, equal trapezoids apart from each other, or all different.
+    /// Eight cells: parallelograms, equal trapezoids apart from each other, all different, or all curved.
     fn mesh(kind: usize) -> Mesh {
         let mut mesh = rectangle([4.0, 2.0], [4, 2]).unwrap();
         if kind == 1 {
@@ -340,12 +355,16 @@ mod tests {
             _ => [1e-3 * (x[0] + 0.2 * (5.0 * x[1]).sin()), 1e-3 * (x[1] + 0.2 * (3.0 * x[0]).cos())],
         };
         mesh.nodes.iter_mut().for_each(|x| *x = place(*x));
+        if kind == 3 {
+            let bulge = |k: usize| [[1e-4, 0.0], [0.0, 5e-5], [0.0, -1e-4], [2e-5, 1e-5 * k as f64], [3e-5, 0.0]];
+            mesh.bulges = (0..8).map(bulge).collect();
+        }
         mesh
     }
 
     #[test]
     fn every_form_of_the_projection_is_that_of_the_complement() {
-        for kind in 0..3 {
+        for kind in 0..4 {
             let mesh = mesh(kind);
             let congruent = Congruent::of(&mesh);
             let mut worst = 0.0f64;
@@ -359,7 +378,7 @@ mod tests {
                     [Class::Whole(_)] => 1,
                     _ => 2,
                 };
-                assert_eq!(is, kind);
+                assert_eq!(is, kind.min(2));
                 for (cell, &(block, lane)) in blocks.slot.iter().enumerate() {
                     let masses: Vec<f64> = geometry.masses(&line, block, lane).collect();
                     let mut f: Vec<f64> = (0..4 * masses.len()).map(|k| ((7 * k + cell) as f64).sin()).collect();

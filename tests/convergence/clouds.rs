@@ -59,7 +59,7 @@ fn unit(problem: &Problem, k: usize) -> f64 {
 }
 
 /// A uniform state with noise in all unknowns.
-fn noisy(problem: &Problem, mesh: &Mesh, scheme: &Scheme, base: [f64; 6], noise: f64) -> State {
+pub fn noisy(problem: &Problem, mesh: &Mesh, scheme: &Scheme, base: [f64; 6], noise: f64) -> State {
     let n = scheme.operators.nodes();
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let mut uniform = || 2.0 * (random.next_u64() >> 11) as f64 * 2f64.powi(-53) - 1.0;
@@ -72,7 +72,7 @@ fn noisy(problem: &Problem, mesh: &Mesh, scheme: &Scheme, base: [f64; 6], noise:
 }
 
 /// Max norm of the difference to a uniform state, in units (1, rho0 c_p).
-fn distance(problem: &Problem, scheme: &Scheme, state: &State, base: [f64; 6]) -> f64 {
+pub fn distance(problem: &Problem, scheme: &Scheme, state: &State, base: [f64; 6]) -> f64 {
     let n = scheme.operators.nodes();
     let cells = state.unpack(&scheme.operators.blocks, n);
     let off = |(e, value): (usize, &f64)| ((value - base[e / n % 6]) / unit(problem, e / n % 6)).abs();
@@ -80,7 +80,14 @@ fn distance(problem: &Problem, scheme: &Scheme, state: &State, base: [f64; 6]) -
 }
 
 /// `steps` steps at .85 of the limit; `see` looks at each state.
-fn walk(scheme: &Scheme, degree: usize, state: &mut State, h: f64, steps: usize, mut see: impl FnMut(usize, &State)) {
+pub fn walk(
+    scheme: &Scheme,
+    degree: usize,
+    state: &mut State,
+    h: f64,
+    steps: usize,
+    mut see: impl FnMut(usize, &State),
+) {
     let mut motion = Motion::new(scheme, std::mem::take(state)).unwrap();
     for step in 1..=steps {
         let dt = 0.85 * cfl::limit(&scheme.method, degree) * h / motion.survey.fastest;

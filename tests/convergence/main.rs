@@ -6,6 +6,7 @@
 
 mod cloud_order;
 mod clouds;
+mod curved;
 mod meshes;
 mod points;
 mod problem;

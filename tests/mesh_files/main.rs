@@ -1,6 +1,7 @@
 //! MSH files from Gmsh itself: each format gives the same mesh, each bad file is refused with its reason, and no
 //! sequence of bytes makes the reader panic. The geometry of the good one is `tests/data/gmsh/two_surfaces.geo`.
 
+mod curved;
 mod others;
 
 use std::path::{Path, PathBuf};
@@ -185,9 +186,9 @@ fn other_elements_are_refused_with_the_option_that_mends_them() {
     let text = refusal("triangles.msh");
     assert!(text.contains("8 element(s) are triangles, the first is element 9"), "{text}");
     assert!(text.contains("Recombine Surface") && text.contains("Mesh.RecombineAll = 1"), "{text}");
-    let text = refusal("order_2.msh");
-    assert!(text.contains("4 element(s) are quadrilaterals of order 2 (9 nodes)"), "{text}");
-    assert!(text.contains("Mesh.ElementOrder = 1"), "{text}");
+    let text = refusal("order_3.msh");
+    assert!(text.contains("4 element(s) are quadrilaterals of order 3 (16 nodes)"), "{text}");
+    assert!(text.contains("Mesh.ElementOrder = 1") && text.contains("= 2;"), "{text}");
     let text = refusal("solid.msh");
     assert!(text.contains("4 element(s) are hexahedra") && text.contains("gmsh -2"), "{text}");
 }
@@ -364,7 +365,7 @@ proptest! {
     fn no_damage_to_a_file_makes_the_reader_panic(
         file in prop::sample::select(vec![
             "two_surfaces_22_ascii.msh", "two_surfaces_22_binary.msh", "two_surfaces_41_ascii.msh",
-            "two_surfaces_41_binary.msh", "parametric_22_binary.msh", "partitioned_41.msh", "solid.msh", "triangles.msh", "order_2.msh",
+            "two_surfaces_41_binary.msh", "parametric_22_binary.msh", "partitioned_41.msh", "solid.msh", "triangles.msh", "order_2.msh", "order_3.msh", "annulus_22.msh", "annulus_41.msh",
         ]),
         damages in prop::collection::vec(damage(), 1..6),
     ) {

@@ -143,3 +143,36 @@ save({"clockwise": 4.1})
 middle = gmsh.model.mesh.getNodes(2, square())[0][0]
 gmsh.model.mesh.setNode(int(middle), [-0.2, -0.2, 0], [])
 save({"inverted": 4.1})
+
+# A quarter of an annulus of radii 1 and 2 m, 2 x 2 cells: its arcs are curved edges of order 2.
+for kind, incomplete, files in (
+    ("9", 0, {"annulus_22": 2.2, "annulus_41": 4.1}),
+    ("8", 1, {"annulus_8": 4.1}),
+):
+    start()
+    geo = gmsh.model.geo
+    centre = geo.addPoint(0, 0, 0)
+    a, b, c, d = [geo.addPoint(*p, 0) for p in [(1, 0), (2, 0), (0, 2), (0, 1)]]
+    curves = [geo.addLine(a, b), geo.addCircleArc(b, centre, c), geo.addLine(c, d), geo.addCircleArc(d, centre, a)]
+    surface = geo.addPlaneSurface([geo.addCurveLoop(curves)])
+    for curve in curves:
+        geo.mesh.setTransfiniteCurve(curve, 3)
+    geo.mesh.setTransfiniteSurface(surface)
+    geo.mesh.setRecombine(2, surface)
+    geo.synchronize()
+    for tag, (name, of) in enumerate({"sides": [0, 2], "outer": [1], "inner": [3]}.items(), 1):
+        gmsh.model.addPhysicalGroup(1, [curves[k] for k in of], tag, name)
+    gmsh.model.addPhysicalGroup(2, [surface], 4, "body")
+    gmsh.option.setNumber("Mesh.SecondOrderIncomplete", incomplete)
+    gmsh.model.mesh.generate(2)
+    gmsh.model.mesh.setOrder(2)
+    # Version 2.2 in binary.
+    for name, version in files.items():
+        gmsh.option.setNumber("Mesh.Binary", int(version == 2.2))
+        gmsh.option.setNumber("Mesh.MshFileVersion", version)
+        gmsh.write(name + ".msh")
+    gmsh.finalize()
+
+square()
+gmsh.model.mesh.setOrder(3)
+save({"order_3": 4.1})
