@@ -44,6 +44,18 @@ def lagrange_values(degree, x):
     return values
 
 
+def lagrange_slopes(degree, x):
+    """Their derivatives: array [point, node]."""
+    nodes = np.linspace(0.0, 1.0, degree + 1)
+    slopes = np.zeros((len(x), degree + 1))
+    for a in range(degree + 1):
+        others = np.delete(nodes, a)
+        for left_out in range(degree):
+            rest = np.delete(others, left_out)
+            slopes[:, a] += np.prod((x[:, None] - rest) / (nodes[a] - rest), axis=1) / (nodes[a] - others[left_out])
+    return slopes
+
+
 @dataclass
 class Grid:
     """An exported grid: `fields[name]` is an array [cell, j, i, component], i along xi1 and j along xi2."""
@@ -66,7 +78,15 @@ class Grid:
         return np.einsum("pi,pj,cjik->cpk", lx, ly, values, optimize=True)
 
     def map(self, xi):
-        """X [cell, point, 2] and det dX/dxi [cell, point] of the bilinear cells at parent points xi[point, 2]."""
+        """X [cell, point, 2] and det dX/dxi [cell, point] of the cells at parent points xi[point, 2]; of degree 2 and more by all nodes, which
+        hold curved cells exactly."""
+        if self.degree >= 2:
+            values, slopes = ([f(self.degree, xi[:, k]) for k in (0, 1)] for f in (lagrange_values, lagrange_slopes))
+            position, t1, t2 = (
+                np.einsum("pi,pj,cjik->cpk", x, y, self.nodes)
+                for x, y in ((values[0], values[1]), (slopes[0], values[1]), (values[0], slopes[1]))
+            )
+            return position, t1[..., 0] * t2[..., 1] - t1[..., 1] * t2[..., 0]
         x, y = xi[:, 0], xi[:, 1]
         shape = np.stack([(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y], axis=1)
         d_x = np.stack([y - 1, 1 - y, y, -y], axis=1)

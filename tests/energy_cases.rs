@@ -290,7 +290,7 @@ fn degree_2_holds_on_flat_cells_and_under_compression() {
 /// .5519, .9590, .9005, .9604.
 #[test]
 fn springs_let_a_vibrating_ring_of_straight_cells_keep_its_energy() {
-    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/validation/ring.msh");
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/ring_straight.msh");
     let ring = Body::of_file(&mesh).side("around", "free", "").velocity(["2.5*x", "-2.5*y"]).end(3.53e-3);
     let scene = scene("ring", ring.material("linear-elastic", [73.08e6, 0.4, 1010.0], ""));
     let without = accounted(&of(&scene, "ader-dgmpm", 2, &[]), false);

@@ -176,3 +176,16 @@ fn every_exported_file_is_read_back_as_the_snapshots_have_it() {
         python::run_dolfinx("tests/python/run_folder.py", [&run]);
     }
 }
+
+/// A ring with curved cells, 2 x 32: its state by numpy and as functions of DOLFINx, and its mesh by DOLFINx.
+#[test]
+fn a_run_on_curved_cells_and_its_mesh_are_read_as_they_are() {
+    let Some(python) = python::python() else { return };
+    let sets = ["time.end=2e-5", "output.1.every_steps=1", "output.2.at=[0.0, 2e-5]"];
+    let run = exported("ring", Path::new("meshes/validation/ring.toml"), &sets);
+    python::run(&python, "tests/python/run_folder.py", [&run]);
+    python::run_dolfinx("tests/python/run_folder.py", [&run]);
+    let mesh = run.join("ring.xdmf");
+    dgmpm(&["mesh", "meshes/validation/ring.msh", "--out", mesh.to_str().unwrap()]);
+    python::run_dolfinx("tests/python/dolfinx_curved.py", [&mesh]);
+}

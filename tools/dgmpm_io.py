@@ -44,16 +44,23 @@ def lagrange(nodes, x):
 
 
 def shape_functions(xi):
-    """The bilinear functions of the four corners at parent coordinates [..., 2]: [..., 4]."""
+    """The bilinear functions of the four corners at parent coordinates [..., 2], then those of the bulges of the faces and of the
+    middle: [..., 9]. A straight cell has the first four."""
     a, b = np.moveaxis(np.asarray(xi, float), -1, 0)
-    return np.stack([(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b], axis=-1)
+    bump_a, bump_b = 4 * a * (1 - a), 4 * b * (1 - b)
+    corners = [(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b]
+    bulges = [bump_b * (1 - a), bump_b * a, bump_a * (1 - b), bump_a * b, bump_a * bump_b]
+    return np.stack(corners + bulges, axis=-1)
 
 
 def shape_gradients(xi):
-    """Their derivatives along xi: [..., corner, 2]."""
+    """Their derivatives along xi: [..., function, 2]."""
     a, b = np.moveaxis(np.asarray(xi, float), -1, 0)
-    along_1 = np.stack([b - 1, 1 - b, b, -b], axis=-1)
-    along_2 = np.stack([a - 1, -a, a, 1 - a], axis=-1)
+    bump_a, bump_b, slope_a, slope_b = 4 * a * (1 - a), 4 * b * (1 - b), 4 - 8 * a, 4 - 8 * b
+    bulges_1 = [-bump_b, bump_b, slope_a * (1 - b), slope_a * b, slope_a * bump_b]
+    bulges_2 = [slope_b * (1 - a), slope_b * a, -bump_a, bump_a, bump_a * slope_b]
+    along_1 = np.stack([b - 1, 1 - b, b, -b] + bulges_1, axis=-1)
+    along_2 = np.stack([a - 1, -a, a, 1 - a] + bulges_2, axis=-1)
     return np.stack([along_1, along_2], axis=-1)
 
 
@@ -76,26 +83,52 @@ class Mesh:
             self.edge_groups = texts(file["edge_groups"])
             #: The number of each cell in the file that the mesh came from.
             self.original = file["original"][...].astype(int)
+            #: Of curved cells, in m: for faces 0 to 3 the way from the middle of the chord to that of the edge, then what is left at the
+            #: middle of the cell, [cell, 5, 2]; None of a mesh with straight edges.
+            self.bulges = file["bulges"][...] if "bulges" in file else None
 
     @property
     def corners(self):
         """X of the corners: [cell, corner, 2]."""
         return self.nodes[self.cells]
 
+    @property
+    def coefficients(self):
+        """What the shape functions are multiplied by: the corners, and the bulges of a curved mesh, [cell, 4 or 9, 2]."""
+        return self.corners if self.bulges is None else np.concatenate([self.corners, self.bulges], axis=1)
+
     def positions(self, xi):
         """X at parent coordinates [point, 2], of each cell: [cell, point, 2]."""
-        return np.einsum("pk,cki->cpi", shape_functions(xi), self.corners)
+        of = self.coefficients
+        return np.einsum("pk,cki->cpi", shape_functions(xi)[:, : of.shape[1]], of)
 
     def determinants(self, xi):
         """det dX/dxi there: [cell, point]."""
-        jacobian = np.einsum("pkj,cki->cpij", shape_gradients(xi), self.corners)
-        return np.linalg.det(jacobian)
+        of = self.coefficients
+        return np.linalg.det(np.einsum("pkj,cki->cpij", shape_gradients(xi)[:, : of.shape[1]], of))
+
+    def with_middles(self):
+        """Of a curved mesh the numbers of the nodes in the middles of faces 0 to 3 and of each cell, [cell, 5], and X of all nodes: first
+        those of the mesh."""
+        places = self.positions(np.array([[0.0, 0.5], [1.0, 0.5], [0.5, 0.0], [0.5, 1.0], [0.5, 0.5]]))
+        numbers, nodes, on_edges = np.empty((len(self.cells), 5), int), list(self.nodes), {}
+        for cell, corners in enumerate(self.cells):
+            ends = [(0, 3), (1, 2), (0, 1), (3, 2)]
+            keys = [tuple(sorted((corners[a], corners[b]))) for a, b in ends] + [("cell", cell)]
+            for face, key in enumerate(keys):
+                if key not in on_edges:
+                    on_edges[key] = len(nodes)
+                    nodes.append(places[cell, face])
+                numbers[cell, face] = on_edges[key]
+        return numbers, np.array(nodes)
 
     def locate(self, points, tolerance=1e-9):
         """The cell of each point X, and its parent coordinates; a ValueError where one lies in no cell."""
         corners, points = self.corners, np.asarray(points, float).reshape(-1, 2)
         low, high = corners.min(axis=1), corners.max(axis=1)
         room = tolerance * (high - low).max(axis=1, keepdims=True)
+        if self.bulges is not None:
+            room = room + np.linalg.norm(self.bulges, axis=2).sum(axis=1, keepdims=True)
         cells, parents = np.empty(len(points), int), np.empty((len(points), 2))
         for number, x in enumerate(points):
             near = np.flatnonzero(((x >= low - room) & (x <= high + room)).all(axis=1))
@@ -108,9 +141,11 @@ class Mesh:
 
     def parent_of(self, cell, x):
         """xi of a point X in a cell, by Newton's method."""
-        corners, xi = self.nodes[self.cells[cell]], np.array([0.5, 0.5])
+        of, xi = self.nodes[self.cells[cell]], np.array([0.5, 0.5])
+        if self.bulges is not None:
+            of = np.concatenate([of, self.bulges[cell]])
         for _ in range(30):
-            step = np.linalg.solve(corners.T @ shape_gradients(xi), x - shape_functions(xi) @ corners)
+            step = np.linalg.solve(of.T @ shape_gradients(xi)[: len(of)], x - shape_functions(xi)[: len(of)] @ of)
             xi = xi + step
             if np.abs(step).max() < 1e-14:
                 break
@@ -226,16 +261,21 @@ class Snapshot:
         from dolfinx.mesh import create_mesh
         from mpi4py import MPI
 
-        # DOLFINx numbers the corners of a quadrilateral line by line.
-        cells = np.ascontiguousarray(self.mesh.cells[:, [0, 1, 3, 2]]).astype(np.int64)
+        # DOLFINx numbers the corners of a quadrilateral line by line, then the middles of its lower, left, right and upper edge.
+        cells, nodes = self.mesh.cells[:, [0, 1, 3, 2]], self.mesh.nodes
+        degree = 1 if self.mesh.bulges is None else 2
+        if degree == 2:
+            middles, nodes = self.mesh.with_middles()
+            cells = np.concatenate([cells, middles[:, [2, 0, 1, 3, 4]]], axis=1)
+        cells = np.ascontiguousarray(cells).astype(np.int64)
         try:
             import basix.ufl
 
-            element = basix.ufl.element("Lagrange", "quadrilateral", 1, shape=(2,))
+            element = basix.ufl.element("Lagrange", "quadrilateral", degree, shape=(2,))
         except ImportError:
-            element = ufl.VectorElement("Lagrange", ufl.quadrilateral, 1)
+            element = ufl.VectorElement("Lagrange", ufl.quadrilateral, degree)
         domain = ufl.Mesh(element)
-        return create_mesh(MPI.COMM_SELF, cells, self.mesh.nodes, domain)
+        return create_mesh(MPI.COMM_SELF, cells, nodes, domain)
 
 
 def cell_numbers(dolfinx, mesh):

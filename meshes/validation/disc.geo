@@ -1,4 +1,4 @@
-// A quarter of a disc of radius 1 m about the origin, of three blocks of n x n cells. Edges are straight: the disc is a polygon.
+// A quarter of a disc of radius 1 m about the origin, of three blocks of n x n cells of order 2: the rim is curved.
 DefineConstant[ n = {6, Name "Cells along a side of each block"} ];
 a = 0.55;                     // where the inner block ends on the axes
 b = 0.45;                     // its corner on the diagonal
@@ -31,4 +31,5 @@ Physical Curve("bottom", 1) = {1, 2};           // on the x axis
 Physical Curve("left", 2) = {5, 7};             // on the y axis
 Physical Curve("rim", 3) = {8, 9};
 Physical Surface("body", 4) = {1, 2, 3};
+Mesh.ElementOrder = 2;
 Mesh.MshFileVersion = 4.1;

@@ -1,4 +1,4 @@
-// A ring of inner radius 30 mm and outer radius 40 mm. Edges are straight: the ring is a polygon.
+// A ring of inner radius 30 mm and outer radius 40 mm. Cells are of order 2: their edges are curved.
 DefineConstant[ nr = {2, Name "Cells through the wall"}, nt = {8, Name "Cells along a quarter"} ];
 around[] = {};
 surfaces[] = {};
@@ -14,4 +14,5 @@ EndFor
 Physical Curve("around", 1) = {around[]};       // both sides
 Physical Surface("ring", 2) = {surfaces[]};
 Coherence;
+Mesh.ElementOrder = 2;
 Mesh.MshFileVersion = 4.1;

@@ -1,4 +1,5 @@
 // Two rings of inner radius 30 mm and outer radius 40 mm. The centre of the second is 84 mm to the right and 20 mm above that of the first.
+// Cells are of order 2: their edges are curved.
 DefineConstant[ nr = {2, Name "Cells through the wall"}, nt = {8, Name "Cells along a quarter"} ];
 xs[] = {0, 0.084};
 ys[] = {0, 0.02};
@@ -26,4 +27,5 @@ For k In {0:1}
 EndFor
 Physical Surface("rings", 4) = {surfaces[]};
 Coherence;
+Mesh.ElementOrder = 2;
 Mesh.MshFileVersion = 4.1;
