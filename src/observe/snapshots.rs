@@ -76,13 +76,9 @@ pub fn write(scheme: &Scheme, state: &State, grid: &GridFiles, folder: &Path) ->
 /// The state in the order of the mesh's cells.
 pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
     let n = scheme.operators.nodes();
-    let all = state.unpack(&scheme.operators.blocks, n);
-    let (mut u, mut displacement) = (Vec::new(), Vec::new());
-    for cell in all.chunks(state.components * n) {
-        let (unknowns, others) = cell.split_at(UNKNOWNS * n);
-        u.extend_from_slice(unknowns);
-        displacement.extend_from_slice(others);
-    }
+    let stride = state.components * n;
+    let of = |some| scheme.operators.blocks.unpack_some(&state.u, stride, some);
+    let (u, displacement) = (of(0..UNKNOWNS * n), of(UNKNOWNS * n..stride));
     let unheld = match state.unheld.is_empty() {
         true => vec![],
         false => scheme.operators.blocks.unpack(&state.unheld, 2 * n),

@@ -91,8 +91,8 @@ impl Scheme {
 
     /// The creep of the faces of a block in a state; empty where they have no springs.
     pub(super) fn creep_of<'s>(&self, state: &'s State, block: usize) -> &'s [F8] {
-        let count = self.creep_of_block();
-        state.creep.get(count * block..count * (block + 1)).unwrap_or_default()
+        let (count, at) = (self.creep_of_block(), block - state.part.block);
+        state.creep.get(count * at..count * (at + 1)).unwrap_or_default()
     }
 
     /// A state with room for the creep of its faces, which begins at 0 where the state has none.
