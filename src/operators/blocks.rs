@@ -208,13 +208,13 @@ impl Blocks {
 
     /// The inverse of [`Blocks::pack`].
     pub fn unpack(&self, values: &[F8], stride: usize) -> Vec<f64> {
-        self.unpack_some(values, stride, 0..stride)
+        self.unpack_some(values, stride, 0..stride, 0..self.slot.len())
     }
 
-    /// Some of the numbers of each cell, [`Blocks::unpack`] has all.
-    pub fn unpack_some(&self, values: &[F8], stride: usize, some: Range<usize>) -> Vec<f64> {
-        let mut out = Vec::with_capacity(self.slot.len() * some.len());
-        for &(block, lane) in &self.slot {
+    /// Some of the numbers of some cells; [`Blocks::unpack`] has all.
+    pub fn unpack_some(&self, values: &[F8], stride: usize, some: Range<usize>, cells: Range<usize>) -> Vec<f64> {
+        let mut out = Vec::with_capacity(cells.len() * some.len());
+        for &(block, lane) in &self.slot[cells] {
             out.extend(some.clone().map(|k| values[block * stride + k].0[lane]));
         }
         out

@@ -35,6 +35,21 @@ impl Motion {
         Ok(motion)
     }
 
+    /// Begins with a copy of a whole state; of several ranks each copies its part only.
+    ///
+    /// # Errors
+    /// As [`Motion::new`].
+    pub fn of_copy(scheme: &Scheme, state: &State) -> Result<Self, Loss> {
+        let is_ready = state.boundary.len() == scheme.boundary_memory.len() && scheme.has_room_for_creep(state);
+        if scheme.exchange.is_none() || !is_ready {
+            return Self::new(scheme, state.clone());
+        }
+        let work = Work::new(scheme, state);
+        let (mut survey, own) = (Survey::default(), work.next.clone());
+        scheme.survey_all(state, &work, &mut survey)?;
+        Ok(Self { state: own, work, survey, other: Survey::default(), shown: See::default() })
+    }
+
     /// Begins with `state`, which [`Motion::survey`] has to look at before the first step.
     pub fn unsurveyed(scheme: &Scheme, state: State) -> Self {
         let mut state = state;

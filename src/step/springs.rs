@@ -95,11 +95,20 @@ impl Scheme {
         state.creep.get(count * at..count * (at + 1)).unwrap_or_default()
     }
 
+    /// Numbers of the creep of a whole state.
+    fn numbers_of_creep(&self) -> usize {
+        if self.keeps_creep() { self.creep_of_block() * self.operators.blocks.len() } else { 0 }
+    }
+
+    /// Whether a whole state has the creep of its faces.
+    pub(super) fn has_room_for_creep(&self, state: &State) -> bool {
+        state.creep.len() == self.numbers_of_creep()
+    }
+
     /// A state with room for the creep of its faces, which begins at 0 where the state has none.
     pub(super) fn make_room_for_creep(&self, state: &mut State) {
-        let wanted = if self.keeps_creep() { self.creep_of_block() * self.operators.blocks.len() } else { 0 };
-        if state.creep.len() != wanted {
-            state.creep = vec![F8::ZERO; wanted];
+        if !self.has_room_for_creep(state) {
+            state.creep = vec![F8::ZERO; self.numbers_of_creep()];
         }
     }
 
