@@ -199,26 +199,13 @@ impl Snapshot {
         if let Some(what) = made.map_or_else(|| self.fault(), |_| None) {
             return Err(Error::output(path, what));
         }
-        let (side, cells) = (self.degree + 1, made.map_or_else(|| self.cells(), |made| made.cells));
-        let of = |numbers: &'a [f64], rows: fn(&OfCells<'a>) -> Option<Rows<'a>>| match made.and_then(rows) {
-            Some(rows) => (cells, ArrayRef::Rows(rows)),
-            None => (if numbers.is_empty() { 0 } else { cells }, ArrayRef::F64(numbers)),
-        };
-        let (u, moved) = (of(&self.u, |made| Some(made.u)), of(&self.displacement, |made| made.displacement));
-        let (unheld, creep) = (of(&self.unheld, |made| made.unheld), of(&self.creep, |made| made.creep));
         let (time, step, degree) = ([self.time], [self.step], [self.degree]);
         let mut arrays = vec![
             ("time", vec![], ArrayRef::F64(&time)),
             ("step", vec![1], ArrayRef::Index(&step)),
             ("degree", vec![1], ArrayRef::Index(&degree)),
-            ("u", vec![u.0, UNKNOWNS, side, side], u.1),
-            ("displacement", vec![moved.0, 2, side, side], moved.1),
-            ("unheld", vec![unheld.0, 2, side, side], unheld.1),
-            ("internal", vec![self.internal.len()], ArrayRef::F64(&self.internal)),
         ];
-        if creep.0 > 0 {
-            arrays.push(("creep", vec![creep.0, FACES, side, AXES], creep.1));
-        }
+        arrays.extend(self.arrays_of_cells(made));
         if !self.boundary.is_empty() {
             arrays.push(("boundary", vec![self.boundary.len()], ArrayRef::F64(&self.boundary)));
         }
@@ -235,6 +222,27 @@ impl Snapshot {
         attributes.extend(self.provenance.attributes());
         attributes.extend(self.made_on.attributes());
         write_kept(path, format, &attributes, &arrays, kept)
+    }
+
+    /// The arrays with numbers of cells, and that of the internal variables: their order in the file.
+    fn arrays_of_cells<'a>(&'a self, made: Option<&OfCells<'a>>) -> Vec<(&'a str, Vec<usize>, ArrayRef<'a>)> {
+        let (side, cells) = (self.degree + 1, made.map_or_else(|| self.cells(), |made| made.cells));
+        let of = |numbers: &'a [f64], rows: fn(&OfCells<'a>) -> Option<Rows<'a>>| match made.and_then(rows) {
+            Some(rows) => (cells, ArrayRef::Rows(rows)),
+            None => (if numbers.is_empty() { 0 } else { cells }, ArrayRef::F64(numbers)),
+        };
+        let (u, moved) = (of(&self.u, |made| Some(made.u)), of(&self.displacement, |made| made.displacement));
+        let (unheld, creep) = (of(&self.unheld, |made| made.unheld), of(&self.creep, |made| made.creep));
+        let mut arrays = vec![
+            ("u", vec![u.0, UNKNOWNS, side, side], u.1),
+            ("displacement", vec![moved.0, 2, side, side], moved.1),
+            ("unheld", vec![unheld.0, 2, side, side], unheld.1),
+            ("internal", vec![self.internal.len()], ArrayRef::F64(&self.internal)),
+        ];
+        if creep.0 > 0 {
+            arrays.push(("creep", vec![creep.0, FACES, side, AXES], creep.1));
+        }
+        arrays
     }
 
     /// Reads a snapshot.

@@ -7,11 +7,11 @@
 //! A rank has the unknowns of its own blocks. Where somebody looks at those of others they are fetched (`parts`). Corrections, contact,
 //! and angular momentum that is kept look at the whole body in each step: then each rank has memory for the whole state.
 
+use super::Scheme;
 use super::numbers::Numbers;
 use super::received::ReceivedBySide;
 use super::tiles::{Plan, Slot};
 use super::worst::Worst;
-use super::Scheme;
 use crate::error::Result;
 use crate::exchange::{Exchange, agree, numbers_of_all};
 use crate::lane::{F8, LANES};
@@ -60,7 +60,7 @@ impl Face {
 impl Ranks {
     /// Those of a scheme, for a plan of so many tiles a rank; none where it runs alone.
     pub fn new(scheme: &Scheme, graph: &[Vec<usize>], plan: &Plan, tiles: usize) -> Option<Box<Self>> {
-        let exchange = scheme.exchange.clone()?;
+        let exchange = scheme.exchange.clone().filter(|exchange| exchange.ranks() > 1)?;
         let (count, blocks) = (plan.tiles.len(), scheme.operators.blocks.len());
         let of = |rank: usize| (rank * tiles).min(count)..((rank + 1) * tiles).min(count);
         let first = |rank: usize| plan.tiles.get(rank * tiles).map_or(blocks, |tile| tile.range.start);
