@@ -13,7 +13,6 @@ use std::io::Read;
 use std::path::Path;
 
 use hdf5_metno as h5;
-use hdf5_metno::H5Type;
 use hdf5_metno::LinkType;
 use hdf5_metno::plist::dataset_create::Layout;
 use hdf5_metno::types::{FixedUnicode, FloatSize, TypeDescriptor, VarLenAscii, VarLenUnicode};

@@ -61,3 +61,35 @@ fn new_dataset<T: H5Type>(group: &h5::Group, name: &str, shape: &[usize]) -> h5:
     let dataset = if shape.is_empty() { builder.create(name)? } else { builder.shape(shape).create(name)? };
     Ok((dataset, rows))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Kept, create_sealed};
+    use super::*;
+
+    #[test]
+    fn an_array_that_is_written_chunk_by_chunk_has_the_bytes_of_one_that_is_written_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        // Stored in one piece, in one chunk, in eight chunks (more than the cache of HDF5 holds) of which the last is shorter.
+        for rows in [0, 3, 100, 6000] {
+            let shape = [rows, 6, 7];
+            let all: Vec<f64> = (0..rows * 42).map(|k| (k as f64).sqrt()).collect();
+            let bytes = |name: &str, fill: &dyn Fn(&h5::File) -> h5::Result<()>| {
+                let path = folder.path().join(name);
+                create_sealed(&path, Kept::Named, fill).unwrap();
+                std::fs::read(path).unwrap()
+            };
+            let once = bytes("once", &|file| put(file, "numbers", &shape, &all));
+            let some = |range: Range<usize>| all[42 * range.start..42 * range.end].to_vec();
+            assert!(once == bytes("parts", &|file| put_rows(file, "numbers", &shape, &some)), "{rows} rows");
+        }
+    }
+
+    #[test]
+    fn a_piece_with_too_few_numbers_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let fill = |file: &h5::File| put_rows(file, "numbers", &[4, 2], &|range| vec![0.0; range.len()]);
+        let why = create_sealed(&folder.path().join("short"), Kept::Named, fill).unwrap_err();
+        assert!(why.to_string().contains("array `numbers` of shape [4, 2] has 4 values"), "{why}");
+    }
+}
