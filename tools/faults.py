@@ -6,7 +6,6 @@ output and into docs/reliability.md; the exit code is 1 where a result was lost 
 usage: DGMPM=path/to/dgmpm tools/faults.py [--kills 100] [--corruptions 200] [--seed 1]
 """
 import argparse
-import json
 import os
 import random
 import re

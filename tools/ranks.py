@@ -262,7 +262,7 @@ def of_memory(work):
     """Ranks share the memory of the states: of each of the four that a run holds, a rank has its part."""
     large, wall = "mesh.rectangle.cells=[340,170]", 'boundary.0={group="left",kind="wall"}'
     outputs = ['output=[{kind="fields",every_steps=4}]', "quantity=[]"]
-    changes = sets([large, wall, ELASTIC, NO_REGRID, *outputs, "time.end=5e-7"])
+    changes = sets([large, wall, ELASTIC, NO_REGRID, *outputs, "time.end=4e-7"])
     peaks = {}
     for ranks in (1, 4):
         run = [SHARED, "run", SMALL, "--threads", "1", *changes, "--out", work / f"memory_{ranks}"]
@@ -275,8 +275,8 @@ def of_memory(work):
     # 8 numbers (displacement) at 9 nodes of each cell, MiB.
     state = 340 * 170 * 8 * 9 * 8 / 2**20
     # Alone a run has 4 states. A rank of four has a fourth of each, and one whole state at the begin, at the end, and on rank 0 where
-    # something is written: 2 less. MPI itself has shared memory for messages to each other rank, some 40 MiB.
-    most = peaks[1][0] - 2 * state + 60
+    # something is written: 2 less. What MPI and the allocator keep is given the room of another one (measured: 1.45 less on rank 0).
+    most = peaks[1][0] - state
     check(max(peaks[4]) < most, f"memory of ranks: {peaks} MiB, at most {most:.0f} of each of 4")
     print(f"memory of ranks: {peaks[1][0]:.0f} MiB alone, {min(peaks[4]):.0f} to {max(peaks[4]):.0f} MiB each of 4", flush=True)
 
