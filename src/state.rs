@@ -16,6 +16,17 @@ pub struct Received {
     pub work: f64,
 }
 
+/// Which blocks of the body a state has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Part {
+    /// Whether it is a part: the blocks of one of several ranks, which follow each other.
+    pub is_part: bool,
+    /// Its first block.
+    pub block: usize,
+    /// The place of the first of its internal variables among those of the whole body.
+    pub internal: usize,
+}
+
 /// The grid unknowns at the Gauss nodes, the master copy between steps.
 ///
 /// Layout: `[block][component][node]`, node a = i M + j with i along xi1. Components are the six of U and, where an
@@ -28,6 +39,8 @@ pub struct State {
     pub step: usize,
     /// 6, or 8 with displacement.
     pub components: usize,
+    /// The blocks of [`State::u`], [`State::internal`] and [`State::creep`]; the rest is of the whole body always.
+    pub part: Part,
     /// The numbers.
     pub u: Vec<F8>,
     /// Internal variables of blocks whose law has some, `[block][point][variable]` at the points where the law is evaluated
@@ -44,15 +57,29 @@ pub struct State {
     pub received: Vec<Received>,
 }
 
+/// A component of a body at rest.
+fn rest(component: usize) -> f64 {
+    if component == 0 || component == 3 { 1.0 } else { 0.0 }
+}
+
 impl State {
+    /// At rest: F = 1, p = 0.
+    pub fn at_rest(blocks: &Blocks, nodes: usize, components: usize) -> Self {
+        let block = (0..components * nodes).map(|k| F8::splat(rest(k / nodes)));
+        let u = (0..blocks.len()).flat_map(|_| block.clone());
+        let mut all = Vec::with_capacity(blocks.len() * components * nodes);
+        all.extend(u);
+        Self { components, u: all, ..Self::default() }
+    }
+
     /// From numbers per cell, `[cell][component][node]`; padding lanes rest at F = 1, p = 0.
     pub fn pack(blocks: &Blocks, nodes: usize, components: usize, cells: &[f64]) -> Self {
-        let rest = |k: usize| if k / nodes == 0 || k / nodes == 3 { 1.0 } else { 0.0 };
         Self {
             time: 0.0,
             step: 0,
             components,
-            u: blocks.pack(cells, components * nodes, rest),
+            part: Part::default(),
+            u: blocks.pack(cells, components * nodes, |k| rest(k / nodes)),
             internal: vec![],
             boundary: vec![],
             unheld: vec![],
@@ -78,6 +105,13 @@ impl State {
             self.unheld = cells.flat_map(|cell| &cell[UNKNOWNS * nodes..]).copied().collect();
         }
         self
+    }
+
+    /// The unknowns of a block with so many nodes a cell, `[component][node]`.
+    #[inline]
+    pub fn of_block(&self, block: usize, nodes: usize) -> &[F8] {
+        let (stride, at) = (self.components * nodes, block - self.part.block);
+        &self.u[stride * at..stride * (at + 1)]
     }
 
     /// Numbers per cell, `[cell][component][node]`.

@@ -6,7 +6,6 @@ output and into docs/reliability.md; the exit code is 1 where a result was lost 
 usage: DGMPM=path/to/dgmpm tools/faults.py [--kills 100] [--corruptions 200] [--seed 1]
 """
 import argparse
-import json
 import os
 import random
 import re
@@ -17,6 +16,8 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+
+from results import differences, results
 
 PROGRAM = str(Path(os.environ["DGMPM"]).resolve())
 BEGIN, END = "<!-- begin of make faults -->", "<!-- end of make faults -->"
@@ -32,33 +33,6 @@ def call(folder, *arguments):
     """Runs the program in a folder: exit code and messages."""
     done = subprocess.run([PROGRAM, *arguments], cwd=folder, capture_output=True, text=True, timeout=600)
     return done.returncode, done.stderr
-
-
-def without_clocks(text):
-    """Numbers of summary.json that no clock has a part in."""
-    words = ("second", "phases", "memory", "threads", "effects", "bytes")
-    return {key: value for key, value in json.loads(text).items() if not any(word in key for word in words)}
-
-
-def results(root):
-    """What a run has written, but for clocks, matrices and checkpoints."""
-    out = {}
-    for path in sorted(root.rglob("*")):
-        name = str(path.relative_to(root))
-        if path.is_dir() or name.startswith("checkpoints/") or name in ("operators.h5", ".dgmpm"):
-            continue
-        data = path.read_bytes()
-        if name == "summary.json":
-            data = repr(without_clocks(data)).encode()
-        if name == "regrid.csv":  # Its last columns are seconds.
-            data = b"\n".join(b",".join(line.split(b",")[:12]) for line in data.splitlines())
-        out[name] = data
-    return out
-
-
-def differences(one, two):
-    """Files that differ between two results."""
-    return sorted(name for name in one.keys() | two.keys() if one.get(name) != two.get(name))
 
 
 def kills(work, whole, seconds, count, dice):

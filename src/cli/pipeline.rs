@@ -28,11 +28,13 @@ pub fn run(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &Run
     // Quantities that the start of the run has not.
     problem.gauge()?;
     say(&problem.origin);
-    let begin = || {
+    let begin = |certificates| {
         kept_files(&folder.clear_results()?);
         write_input(&problem, files, &folder, certificates)
     };
-    problem.agree(if problem.writes() { begin() } else { Ok(()) })?;
+    // All ranks drop them before the run.
+    let begin = |all| if problem.writes() { begin(all) } else { Ok(drop(all)) };
+    problem.agree(begin(certificates))?;
     solve(problem, &folder)
 }
 

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use super::hdf5::Kept;
 use super::pending::check_folder;
 use super::seal::{self, Seal};
-use super::snapshot::{self, Snapshot};
+use super::snapshot::{self, OfCells, Snapshot};
 use super::store::{ArrayRef, Format, Store};
 use crate::error::{Error, Place, Result};
 use crate::words::Words;
@@ -50,6 +50,14 @@ impl Checkpoint {
     /// # Errors
     /// A file that cannot be written.
     pub fn write(&self, folder: &Path) -> Result<PathBuf> {
+        self.write_with(folder, None)
+    }
+
+    /// The same with numbers of the cells that are made while they are written.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write_with(&self, folder: &Path, made: Option<&OfCells>) -> Result<PathBuf> {
         let path = snapshot::path(folder, self.snapshot.step);
         let word = |is: bool| if is { YES } else { "no" }.to_owned();
         let attributes = vec![
@@ -63,7 +71,7 @@ impl Checkpoint {
         let all = self.parts.iter().map(|(name, words)| (&name[..], words)).chain([(SCENE, &scene)]);
         let names: Vec<(String, &Words)> = all.map(|(name, words)| (format!("{PART}{name}"), words)).collect();
         let arrays = names.iter().map(|(name, words)| (&name[..], vec![words.0.len()], ArrayRef::U64(&words.0)));
-        self.snapshot.write_as(&path, FORMAT, attributes, arrays.collect(), Kept::OnDisk)?;
+        self.snapshot.write_as(&path, made, (FORMAT, Kept::OnDisk), attributes, arrays.collect())?;
         // A folder that went away in the meantime is the reason of whatever failed.
         remove_older(folder, &path).or_else(|why| check_folder(folder).and(Err(why)))?;
         Ok(path)

@@ -4,13 +4,15 @@
 //! texts are written with fixed lengths, a file without a seal is read only where the user trusts it, and whatever leads out of
 //! a file is an error.
 
+mod datasets;
 mod within;
+
+pub use datasets::{put, put_rows};
 
 use std::io::Read;
 use std::path::Path;
 
 use hdf5_metno as h5;
-use hdf5_metno::H5Type;
 use hdf5_metno::LinkType;
 use hdf5_metno::plist::dataset_create::Layout;
 use hdf5_metno::types::{FixedUnicode, FloatSize, TypeDescriptor, VarLenAscii, VarLenUnicode};
@@ -107,27 +109,6 @@ fn without_locks() -> h5::FileBuilder {
     let mut options = h5::File::with_options();
     options.with_fapl(|access| access.file_locking(false));
     options
-}
-
-/// Writes one dataset (row-major, `shape` may be empty for a single number), packed where that pays.
-/// The same values give the same bytes in the file: no time stamps.
-pub fn put<T: H5Type>(group: &h5::Group, name: &str, shape: &[usize], values: &[T]) -> h5::Result<()> {
-    let count: usize = shape.iter().product();
-    if count != values.len() {
-        return Err(h5::Error::from(format!("array `{name}` of shape {shape:?} has {} values", values.len()).as_str()));
-    }
-    let mut builder = group.new_dataset::<T>().obj_track_times(false).create_intermediate_group(true);
-    let row = count.checked_div(shape.first().copied().unwrap_or(1)).unwrap_or(0) * size_of::<T>();
-    if count * size_of::<T>() > SMALL_BYTES && row > 0 {
-        let mut chunk = shape.to_vec();
-        chunk[0] = (CHUNK_BYTES / row).clamp(1, chunk[0]);
-        builder = builder.chunk(chunk);
-        if h5::filters::deflate_available() {
-            builder = builder.shuffle().deflate(DEFLATE_LEVEL);
-        }
-    }
-    let dataset = if shape.is_empty() { builder.create(name)? } else { builder.shape(shape).create(name)? };
-    if values.is_empty() { Ok(()) } else { dataset.write_raw(values) }
 }
 
 /// Lengths of texts in a file, bytes: a list of texts takes the first that all of them fit into.

@@ -1,15 +1,16 @@
 //! `operators.h5`: the stored matrices, with a key: a hash of the input that they were built from.
 
+use std::ops::Range;
 use std::path::Path;
 
 use super::certificates::Columns;
 use super::hash::{self, Digest};
 use super::hdf5;
 use super::seal::{self, Seal};
-use super::store::{ArrayRef, Format, Store, write_arrays};
+use super::store::{ArrayRef, Format, Rows, Store, write_arrays};
 use crate::error::Result;
 use crate::mesh::{FACES, Link, Mesh};
-use crate::operators::stored::Flat;
+use crate::operators::stored::{Entries, Flat};
 use crate::operators::{Blocks, Certificate, Needs, Sampling, Stored};
 
 /// The format of the stored matrices. Version 3: cells of a block follow each other, see [`Blocks`]. Version 4 adds the
@@ -53,20 +54,23 @@ pub fn key(mesh: &Mesh, periodic: &[[usize; 2]], material: &[usize], needs: &Nee
 
 /// Writes blocks and matrices under their key, with the certificates of the cells.
 pub fn write(path: &Path, key: &str, blocks: &Blocks, stored: &Stored, certificates: &[Certificate]) -> Result<()> {
-    let parts =
-        [("points", stored.points.as_ref().map(Flat::of)), ("curl_free", stored.curl_free.as_ref().map(Flat::of))];
+    let points = stored.points.as_ref().map(|pool| (Flat::without_own(pool), Entries::of(&pool.own)));
+    let curl_free = stored.curl_free.as_ref().map(|pool| (Flat::without_own(pool), Entries::of(&pool.own)));
+    let parts = [("points", &points), ("curl_free", &curl_free)];
+    let some = parts
+        .map(|(_, part)| move |range: Range<usize>| part.as_ref().map(|(_, own)| own.some(range)).unwrap_or_default());
     let cells = blocks.list();
     let mut arrays = vec![
         (BLOCK_CELLS.to_owned(), cells.len(), ArrayRef::Index(&cells)),
         (BLOCK_SIZES.to_owned(), blocks.len(), ArrayRef::Index(&blocks.count)),
     ];
-    for (name, flat) in &parts {
-        let Some(flat) = flat else { continue };
+    for ((name, part), some) in parts.iter().zip(&some) {
+        let Some((flat, own)) = part else { continue };
         arrays.push((format!("{name}_share"), flat.share.len(), ArrayRef::I64(&flat.share)));
         arrays.push((format!("{name}_shared_sizes"), flat.shared_sizes.len(), ArrayRef::Index(&flat.shared_sizes)));
         arrays.push((format!("{name}_own_sizes"), flat.own_sizes.len(), ArrayRef::Index(&flat.own_sizes)));
         arrays.push((format!("{name}_shared"), flat.shared.len(), ArrayRef::F64(&flat.shared)));
-        arrays.push((format!("{name}_own"), flat.own.len(), ArrayRef::F64(&flat.own)));
+        arrays.push((format!("{name}_own"), own.len(), ArrayRef::Rows(Rows(some))));
     }
     let mut arrays: Vec<_> = arrays.iter().map(|(name, len, array)| (name.as_str(), vec![*len], *array)).collect();
     let columns = Columns::of(certificates);

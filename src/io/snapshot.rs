@@ -18,7 +18,7 @@ use super::fingerprint::Fingerprint;
 use super::hash::Digest;
 use super::hdf5;
 use super::provenance::Provenance;
-use super::store::{ArrayRef, Format, Store, write_kept};
+use super::store::{ArrayRef, Format, Rows, Store, write_kept};
 use crate::error::{Error, Result};
 use crate::mesh::FACES;
 use crate::state::UNKNOWNS;
@@ -62,6 +62,22 @@ pub struct Snapshot {
     pub made_on: Fingerprint,
     /// By which program it was made, and from what.
     pub provenance: Provenance,
+}
+
+/// Numbers of the cells of a state that are made while a snapshot is written, in the order of the mesh: in the place of the lists of
+/// [`Snapshot`], which are then empty. None for what the state does not have.
+#[derive(Clone, Copy)]
+pub struct OfCells<'a> {
+    /// The number of cells.
+    pub cells: usize,
+    /// [`Snapshot::u`].
+    pub u: Rows<'a>,
+    /// [`Snapshot::displacement`].
+    pub displacement: Option<Rows<'a>>,
+    /// [`Snapshot::unheld`].
+    pub unheld: Option<Rows<'a>>,
+    /// [`Snapshot::creep`].
+    pub creep: Option<Rows<'a>>,
 }
 
 /// Names of the files of a grid in the folder of a run.
@@ -162,37 +178,34 @@ impl Snapshot {
 
     /// Writes the snapshot, bit for bit.
     pub fn write(&self, path: &Path) -> Result<()> {
-        self.write_as(path, FORMAT, vec![], vec![], hdf5::Kept::Named)
+        self.write_as(path, None, (FORMAT, hdf5::Kept::Named), vec![], vec![])
+    }
+
+    /// The same with numbers of the cells that are made while they are written.
+    pub fn write_with(&self, path: &Path, made: &OfCells) -> Result<()> {
+        self.write_as(path, Some(made), (FORMAT, hdf5::Kept::Named), vec![], vec![])
     }
 
     /// Writes the snapshot as a part of a file of another format, with further attributes and arrays.
     pub(super) fn write_as<'a>(
         &'a self,
         path: &Path,
-        format: Format,
+        made: Option<&OfCells<'a>>,
+        (format, kept): (Format, hdf5::Kept),
         more_attributes: Vec<(&'a str, String)>,
         more_arrays: Vec<(&'a str, Vec<usize>, ArrayRef<'a>)>,
-        kept: hdf5::Kept,
     ) -> Result<()> {
-        if let Some(what) = self.fault() {
+        // What is made as it is written is not here to be looked at: each piece has as many numbers as its shape, or is an error.
+        if let Some(what) = made.map_or_else(|| self.fault(), |_| None) {
             return Err(Error::output(path, what));
         }
-        let side = self.degree + 1;
-        let moved = if self.displacement.is_empty() { 0 } else { self.cells() };
-        let unheld = if self.unheld.is_empty() { 0 } else { self.cells() };
         let (time, step, degree) = ([self.time], [self.step], [self.degree]);
         let mut arrays = vec![
             ("time", vec![], ArrayRef::F64(&time)),
             ("step", vec![1], ArrayRef::Index(&step)),
             ("degree", vec![1], ArrayRef::Index(&degree)),
-            ("u", vec![self.cells(), UNKNOWNS, side, side], ArrayRef::F64(&self.u)),
-            ("displacement", vec![moved, 2, side, side], ArrayRef::F64(&self.displacement)),
-            ("unheld", vec![unheld, 2, side, side], ArrayRef::F64(&self.unheld)),
-            ("internal", vec![self.internal.len()], ArrayRef::F64(&self.internal)),
         ];
-        if !self.creep.is_empty() {
-            arrays.push(("creep", vec![self.cells(), FACES, side, AXES], ArrayRef::F64(&self.creep)));
-        }
+        arrays.extend(self.arrays_of_cells(made));
         if !self.boundary.is_empty() {
             arrays.push(("boundary", vec![self.boundary.len()], ArrayRef::F64(&self.boundary)));
         }
@@ -209,6 +222,27 @@ impl Snapshot {
         attributes.extend(self.provenance.attributes());
         attributes.extend(self.made_on.attributes());
         write_kept(path, format, &attributes, &arrays, kept)
+    }
+
+    /// The arrays with numbers of cells, and that of the internal variables: their order in the file.
+    fn arrays_of_cells<'a>(&'a self, made: Option<&OfCells<'a>>) -> Vec<(&'a str, Vec<usize>, ArrayRef<'a>)> {
+        let (side, cells) = (self.degree + 1, made.map_or_else(|| self.cells(), |made| made.cells));
+        let of = |numbers: &'a [f64], rows: fn(&OfCells<'a>) -> Option<Rows<'a>>| match made.and_then(rows) {
+            Some(rows) => (cells, ArrayRef::Rows(rows)),
+            None => (if numbers.is_empty() { 0 } else { cells }, ArrayRef::F64(numbers)),
+        };
+        let (u, moved) = (of(&self.u, |made| Some(made.u)), of(&self.displacement, |made| made.displacement));
+        let (unheld, creep) = (of(&self.unheld, |made| made.unheld), of(&self.creep, |made| made.creep));
+        let mut arrays = vec![
+            ("u", vec![u.0, UNKNOWNS, side, side], u.1),
+            ("displacement", vec![moved.0, 2, side, side], moved.1),
+            ("unheld", vec![unheld.0, 2, side, side], unheld.1),
+            ("internal", vec![self.internal.len()], ArrayRef::F64(&self.internal)),
+        ];
+        if creep.0 > 0 {
+            arrays.push(("creep", vec![creep.0, FACES, side, AXES], creep.1));
+        }
+        arrays
     }
 
     /// Reads a snapshot.

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::io::Read;
+use std::ops::Range;
 use std::path::Path;
 
 use super::hdf5::{self, Reader, Values};
@@ -34,6 +35,18 @@ pub enum ArrayRef<'a> {
     Index(&'a [usize]),
     /// Texts; the shape is one number.
     Text(&'a [String]),
+    /// Real numbers that are made while they are written.
+    Rows(Rows<'a>),
+}
+
+/// Makes the real numbers of some rows of the first axis of an array.
+#[derive(Clone, Copy)]
+pub struct Rows<'a>(pub &'a dyn Fn(Range<usize>) -> Vec<f64>);
+
+impl std::fmt::Debug for Rows<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("rows")
+    }
 }
 
 /// A file that was read. Its arrays are taken out by name.
@@ -84,6 +97,7 @@ pub(super) fn write_kept(
                 let values: Vec<i64> = values.iter().map(|&v| v as i64).collect();
                 hdf5::put(file, name, shape, &values)
             }
+            ArrayRef::Rows(Rows(rows)) => hdf5::put_rows(file, name, shape, rows),
             ArrayRef::Text(values) => hdf5::put_texts(file, name, values),
         })
     })

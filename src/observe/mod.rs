@@ -14,7 +14,7 @@ pub use fields::Field;
 pub use ledger::{Contents, Ledger};
 pub use line::{Line, Outside, Sample, Samples};
 pub use schedule::{Schedule, When};
-pub use snapshots::{Snapshots, take, write};
+pub use snapshots::{Snapshots, take, with_cells, without_cells, write};
 pub use solution::{Point, Solution};
 pub use spot::Spot;
 

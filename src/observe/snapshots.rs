@@ -5,9 +5,11 @@ use crate::error::Error;
 use crate::io::fingerprint::Fingerprint;
 use crate::io::pending;
 use crate::io::provenance::Provenance;
-use crate::io::snapshot::{self, GridFiles, Snapshot};
+use crate::io::snapshot::{self, GridFiles, OfCells, Snapshot};
+use crate::io::store::Rows;
 use crate::state::{State, UNKNOWNS};
 use crate::step::Scheme;
+use crate::tensor::AXES;
 use crate::words::{Saved, Words};
 use std::path::{Path, PathBuf};
 
@@ -34,7 +36,9 @@ impl Observer for Snapshots {
         pending::check_folder(&self.folder)?;
         let Snapshot { corrected, rescued, .. } = treated(view);
         let path = snapshot::path(&self.folder, view.state.step);
-        Snapshot { corrected, rescued, grid: self.grid.clone(), ..take(view.scheme, view.state) }.write(&path)
+        let rest = without_cells(view.scheme, view.state);
+        let snapshot = Snapshot { corrected, rescued, grid: self.grid.clone(), ..rest };
+        with_cells(view.scheme, view.state, |made| snapshot.write_with(&path, made))
     }
 
     fn save(&mut self, to: &mut Words) -> Result<(), Error> {
@@ -69,44 +73,44 @@ fn treated(view: &View) -> Snapshot {
 /// The file cannot be written.
 pub fn write(scheme: &Scheme, state: &State, grid: &GridFiles, folder: &Path) -> Result<PathBuf, Error> {
     let path = snapshot::path(folder, state.step);
-    Snapshot { grid: grid.clone(), ..take(scheme, state) }.write(&path)?;
+    let snapshot = Snapshot { grid: grid.clone(), ..without_cells(scheme, state) };
+    with_cells(scheme, state, |made| snapshot.write_with(&path, made))?;
     Ok(path)
 }
 
 /// The state in the order of the mesh's cells.
 pub fn take(scheme: &Scheme, state: &State) -> Snapshot {
-    let n = scheme.operators.nodes();
-    let all = state.unpack(&scheme.operators.blocks, n);
-    let (mut u, mut displacement) = (Vec::new(), Vec::new());
-    for cell in all.chunks(state.components * n) {
-        let (unknowns, others) = cell.split_at(UNKNOWNS * n);
-        u.extend_from_slice(unknowns);
-        displacement.extend_from_slice(others);
-    }
-    let unheld = match state.unheld.is_empty() {
-        true => vec![],
-        false => scheme.operators.blocks.unpack(&state.unheld, 2 * n),
-    };
-    let creep = match state.creep.is_empty() {
-        true => vec![],
-        false => scheme.operators.blocks.unpack(&state.creep, scheme.creep_of_block()),
-    };
+    let all = 0..scheme.operators.blocks.slot.len();
+    with_cells(scheme, state, |made| {
+        let list = |rows: Option<Rows>| rows.map(|rows| (rows.0)(all.clone())).unwrap_or_default();
+        let (u, displacement) = (list(Some(made.u)), list(made.displacement));
+        let (unheld, creep) = (list(made.unheld), list(made.creep));
+        Snapshot { u, displacement, unheld, creep, ..without_cells(scheme, state) }
+    })
+}
+
+/// The state without the numbers of cells that [`with_cells`] makes.
+pub fn without_cells(scheme: &Scheme, state: &State) -> Snapshot {
     let (internal, boundary) = (scheme.internal_of(state), scheme.boundary_memory_of(state));
     let received = state.received.iter().flat_map(|group| [group.impulse[0], group.impulse[1], group.work]).collect();
     let (time, step, degree, made_on) = (state.time, state.step, scheme.operators.degree, Fingerprint::of(scheme));
-    Snapshot {
-        time,
-        step,
-        degree,
-        u,
-        displacement,
-        unheld,
-        creep,
-        internal,
-        boundary,
-        received,
-        made_on,
-        provenance: Provenance::of(scheme),
-        ..Snapshot::default()
-    }
+    let provenance = Provenance::of(scheme);
+    Snapshot { time, step, degree, internal, boundary, received, made_on, provenance, ..Snapshot::default() }
+}
+
+/// What `work` does with the numbers of the cells of a state, in the order of the mesh, which are made where they are asked for.
+pub fn with_cells<R>(scheme: &Scheme, state: &State, work: impl FnOnce(&OfCells) -> R) -> R {
+    let (blocks, n) = (&scheme.operators.blocks, scheme.operators.nodes());
+    let (stride, creep_of_block) = (state.components * n, scheme.creep_of_block());
+    let u = |cells| blocks.unpack_some(&state.u, stride, 0..UNKNOWNS * n, cells);
+    let displacement = |cells| blocks.unpack_some(&state.u, stride, UNKNOWNS * n..stride, cells);
+    let unheld = |cells| blocks.unpack_some(&state.unheld, AXES * n, 0..AXES * n, cells);
+    let creep = |cells| blocks.unpack_some(&state.creep, creep_of_block, 0..creep_of_block, cells);
+    work(&OfCells {
+        cells: blocks.slot.len(),
+        u: Rows(&u),
+        displacement: state.has_displacement().then_some(Rows(&displacement)),
+        unheld: (!state.unheld.is_empty()).then_some(Rows(&unheld)),
+        creep: (!state.creep.is_empty()).then_some(Rows(&creep)),
+    })
 }

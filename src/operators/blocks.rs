@@ -4,6 +4,7 @@ use super::order;
 use super::sides::{Across, Gathered, Neighbour, Plan, Side, joined};
 use crate::lane::{F8, LANES};
 use crate::mesh::{FACES, Link};
+use std::ops::Range;
 
 /// The blocks; the last one of a law is padded with its last cell.
 ///
@@ -207,9 +208,14 @@ impl Blocks {
 
     /// The inverse of [`Blocks::pack`].
     pub fn unpack(&self, values: &[F8], stride: usize) -> Vec<f64> {
-        let mut out = Vec::with_capacity(self.slot.len() * stride);
-        for &(block, lane) in &self.slot {
-            out.extend((0..stride).map(|k| values[block * stride + k].0[lane]));
+        self.unpack_some(values, stride, 0..stride, 0..self.slot.len())
+    }
+
+    /// Some of the numbers of some cells; [`Blocks::unpack`] has all.
+    pub fn unpack_some(&self, values: &[F8], stride: usize, some: Range<usize>, cells: Range<usize>) -> Vec<f64> {
+        let mut out = Vec::with_capacity(cells.len() * some.len());
+        for &(block, lane) in &self.slot[cells] {
+            out.extend(some.clone().map(|k| values[block * stride + k].0[lane]));
         }
         out
     }

@@ -92,18 +92,42 @@ pub fn classes<K: Hash + Eq>(cells: usize, key: impl Fn(usize) -> K) -> (Vec<usi
     (class, examples)
 }
 
+/// Those of the classes of eight lanes; none where one is not there.
+fn lanes_of<S>(all: &[Option<S>], classes: [usize; LANES]) -> Option<[&S; LANES]> {
+    let mut out = [all[classes[0]].as_ref()?; LANES];
+    for (out, class) in out.iter_mut().zip(classes) {
+        *out = all[class].as_ref()?;
+    }
+    Some(out)
+}
+
 impl<S, O> Pool<S, O> {
-    /// Shares `build(class)` among blocks of one class, `interleave`s the classes of the others.
+    /// Shares `build(class)` among blocks of one class, `interleave`s the classes of the others. What is in no further block is dropped
+    /// on the way, so that matrices of single cells are not held twice.
     pub fn new(blocks: &[[usize; LANES]], class: &[usize], all: Vec<S>, interleave: impl Fn([&S; LANES]) -> O) -> Self {
+        let mut all: Vec<Option<S>> = all.into_iter().map(Some).collect();
         let (mut share, mut own, mut used) = (Vec::new(), Vec::new(), vec![false; all.len()]);
+        let is_one_class = |cells: &[usize; LANES]| cells.iter().all(|&cell| class[cell] == class[cells[0]]);
+        // Lanes of mixed blocks that are still to come.
+        let mut left = vec![0_usize; all.len()];
         for cells in blocks {
-            let first = class[cells[0]];
-            if cells.iter().all(|&cell| class[cell] == first) {
-                used[first] = true;
-                share.push(Share::Shared(first));
-            } else {
-                share.push(Share::Own(own.len()));
-                own.push(interleave(cells.map(|cell| &all[class[cell]])));
+            match is_one_class(cells) {
+                true => used[class[cells[0]]] = true,
+                false => cells.iter().for_each(|&cell| left[class[cell]] += 1),
+            }
+        }
+        for cells in blocks {
+            if is_one_class(cells) {
+                share.push(Share::Shared(class[cells[0]]));
+                continue;
+            }
+            share.push(Share::Own(own.len()));
+            own.extend(lanes_of(&all, cells.map(|cell| class[cell])).map(&interleave));
+            for class in cells.map(|cell| class[cell]) {
+                left[class] -= 1;
+                if left[class] == 0 && !used[class] {
+                    all[class] = None;
+                }
             }
         }
         // A class that occurs only in mixed blocks needs no matrix of its own.
@@ -111,7 +135,7 @@ impl<S, O> Pool<S, O> {
         let mut shared = Vec::new();
         for (class, matrices) in all.into_iter().enumerate().filter(|(class, _)| used[*class]) {
             number[class] = shared.len();
-            shared.push(matrices);
+            shared.extend(matrices);
         }
         for entry in &mut share {
             if let Share::Shared(class) = entry {

@@ -6,6 +6,7 @@ use super::{Blocks, CurlFree, Line, Matrix, Needs, PointMatrices, Points, Pool, 
 use crate::error::Error;
 use crate::lane::{Coefficient, F8, LANES, as_f64};
 use crate::mesh::Mesh;
+use std::ops::Range;
 
 /// The results of all decompositions. Everything else in the operators is quickly computed from the mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,6 +92,12 @@ pub struct Flat {
 impl Flat {
     /// The arrays of a pool.
     pub fn of<S: Bundle<f64>, O: Bundle<F8>>(pool: &Pool<S, O>) -> Self {
+        let own = Entries::of(&pool.own);
+        Self { own: own.some(0..own.len()), ..Self::without_own(pool) }
+    }
+
+    /// The same without the entries of the own matrices, which [`Entries`] has.
+    pub fn without_own<S: Bundle<f64>, O: Bundle<F8>>(pool: &Pool<S, O>) -> Self {
         let number = |share: &Share| match *share {
             Share::Shared(k) => k as i64,
             Share::Own(k) => -1 - k as i64,
@@ -100,7 +107,7 @@ impl Flat {
             shared_sizes: pool.shared.iter().map(Bundle::size).collect(),
             own_sizes: pool.own.iter().map(Bundle::size).collect(),
             shared: pool.shared.iter().flat_map(Bundle::list).flat_map(|m| m.data.iter().copied()).collect(),
-            own: pool.own.iter().flat_map(Bundle::list).flat_map(|m| as_f64(&m.data).iter().copied()).collect(),
+            own: vec![],
         }
     }
 
@@ -123,6 +130,49 @@ impl Flat {
     }
 }
 
+/// The entries of the own matrices of a pool, lane fastest, without a copy of all.
+pub struct Entries<'a> {
+    matrices: Vec<&'a [f64]>,
+    /// The place behind the last entry of each matrix.
+    ends: Vec<usize>,
+}
+
+impl<'a> Entries<'a> {
+    /// Those of these matrices.
+    pub fn of<O: Bundle<F8>>(own: &'a [O]) -> Self {
+        let matrices: Vec<&[f64]> = own.iter().flat_map(Bundle::list).map(|matrix| as_f64(&matrix.data)).collect();
+        let ends = matrices.iter().scan(0, |end, matrix| {
+            *end += matrix.len();
+            Some(*end)
+        });
+        Self { ends: ends.collect(), matrices }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.ends.last().copied().unwrap_or(0)
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Some of them.
+    pub fn some(&self, range: Range<usize>) -> Vec<f64> {
+        let mut out = Vec::with_capacity(range.len());
+        let first = self.ends.partition_point(|end| *end <= range.start);
+        for (matrix, end) in self.matrices.iter().zip(&self.ends).skip(first) {
+            let start = end - matrix.len();
+            if start >= range.end {
+                break;
+            }
+            out.extend_from_slice(&matrix[range.start.max(start) - start..range.end.min(*end) - start]);
+        }
+        out
+    }
+}
+
 /// Cuts entries into bundles of the given sizes; `None` if there are too few or too many entries.
 fn cut<C: Coefficient, B: Bundle<C>>(sizes: &[usize], nodes: usize, mut entries: &[C]) -> Option<Vec<B>> {
     let mut out = Vec::with_capacity(sizes.len());
@@ -136,4 +186,24 @@ fn cut<C: Coefficient, B: Bundle<C>>(sizes: &[usize], nodes: usize, mut entries:
         out.push(B::from_list(list)?);
     }
     entries.is_empty().then_some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_of_matrices_in_any_range_are_those_of_all() {
+        let matrix = |columns: usize, from: usize| {
+            let numbers = (0..columns).map(|k| F8(std::array::from_fn(|lane| (from + LANES * k + lane) as f64)));
+            Matrix::new(1, columns, numbers.collect())
+        };
+        let own = [matrix(2, 0), matrix(1, 16), matrix(3, 24)];
+        let entries = Entries::of(&own);
+        let all: Vec<f64> = (0..48).map(f64::from).collect();
+        assert_eq!(entries.len(), all.len());
+        for start in 0..=all.len() {
+            (start..=all.len()).for_each(|end| assert_eq!(entries.some(start..end), all[start..end]));
+        }
+    }
 }

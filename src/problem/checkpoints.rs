@@ -105,13 +105,14 @@ impl Keep for OnGrid<'_, '_> {
         pending::check_folder(&own.folder.root)?;
         self.body.keep(own.folder, self.files)?;
         let checkpoint = Checkpoint {
-            snapshot: Snapshot { grid: self.files.clone(), ..observe::take(moment.scheme, moment.state) },
+            snapshot: Snapshot { grid: self.files.clone(), ..observe::without_cells(moment.scheme, moment.state) },
             scene,
             kernel: moment.scheme.kernel.name().to_owned(),
             observed: own.observed == Some(moment.state.step),
             has_snapshot: snapshot::path(&own.folder.snapshots(), moment.state.step).exists(),
             parts: moment.parts.iter().cloned().collect(),
         };
-        checkpoint.write(&own.folder.checkpoints()).map(drop)
+        let folder = own.folder.checkpoints();
+        observe::with_cells(moment.scheme, moment.state, |made| checkpoint.write_with(&folder, Some(made))).map(drop)
     }
 }

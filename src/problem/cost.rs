@@ -30,7 +30,7 @@ impl Problem {
     /// A state that is not healthy at a point or a face.
     pub fn cost(&self) -> Result<Cost, Loss> {
         let Self { scheme, state, settings, .. } = self;
-        let mut motion = Motion::new(scheme, state.clone())?;
+        let mut motion = Motion::of_copy(scheme, state)?;
         let dt = settings.courant * self.body.mesh.smallest_h() / motion.survey.fastest;
         let steps = ((settings.end - state.time) / dt).ceil();
         let mut trial = || {
@@ -42,7 +42,7 @@ impl Problem {
         // The first trial touches the memory for the first time.
         let _ = trial();
         let seconds = trial() * steps;
-        let of_state = size_of_val(&state.u[..]) + size_of_val(&state.internal[..]);
+        let of_state = size_of_val(&motion.state.u[..]) + size_of_val(&motion.state.internal[..]);
         let states = of_state + size_of_val(&motion.state.creep[..]) + Kept::bytes(&motion.state);
         let bytes = scheme.operators.bytes() + motion.work.bytes() + states;
         let survey = motion.survey;

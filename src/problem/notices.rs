@@ -229,13 +229,13 @@ fn large(mesh: &Mesh) -> Option<String> {
 /// The first cell at whose nodes |v| is most above the wave speed.
 fn fast_start(mesh: &Mesh, scheme: &Scheme, state: &State, survey: &Survey) -> Option<String> {
     let (blocks, n) = (&scheme.operators.blocks, scheme.operators.nodes());
-    let unknowns = state.unpack(blocks, n);
     let mut worst = (1.0, None);
-    for (cell, u) in unknowns.chunks_exact(state.components * n).enumerate() {
-        let (block, lane) = blocks.slot[cell];
+    for (cell, &(block, lane)) in blocks.slot.iter().enumerate() {
+        let u = state.of_block(block, n);
         let density = scheme.laws[blocks.material[block]].density();
         let c = survey.speed[block].fastest.0[lane];
-        let v = (0..n).map(|a| u[4 * n + a].hypot(u[5 * n + a]) / density).fold(0.0, f64::max);
+        let p = |k: usize, a: usize| u[k * n + a].0[lane];
+        let v = (0..n).map(|a| p(4, a).hypot(p(5, a)) / density).fold(0.0, f64::max);
         if v > worst.0 * c {
             worst = (v / c, Some((cell, v, c)));
         }

@@ -127,7 +127,11 @@ impl<'a> Regrids<'a> {
         };
         let files = HashMap::from([(key_of_files(first), problem.files.clone())]);
         let fired = vec![0; schedules.len()];
-        let (material, cloud) = (first.material.clone(), first.cloud.clone());
+        // Nobody looks at them without a rule.
+        let (material, cloud) = match schedules.is_empty() {
+            true => Default::default(),
+            false => (first.material.clone(), first.cloud.clone()),
+        };
         let (recent, start) = (Recent::default(), first.mesh.cells.len());
         Ok(Self { scene, folder, schedules, fired, next: None, material, cloud, start, recent, files, table })
     }

@@ -2,6 +2,7 @@
 
 use super::ranks::Silent;
 use super::{Checkpoints, Ended, Files, Outcome, Problem, Solve, check_folder, write_input};
+use crate::cloud::Cloud;
 use crate::error::{Error, Result};
 use crate::observe::Observer;
 use crate::quantity::Gauge;
@@ -61,6 +62,7 @@ impl Problem {
         });
         let writes = self.writes();
         let ended = self.agree(ready).map_err(Into::into).and_then(|observers| {
+            self.forget_input();
             // In this order: `effects` names the clocks of observers by it.
             let mut observers: Vec<Box<dyn Observer + '_>> =
                 observers.into_iter().map(|observer| observer as _).collect();
@@ -81,6 +83,15 @@ impl Problem {
             false => ended.map_err(|stop| self.settle(stop)),
         };
         (report, self.agree(result))
+    }
+
+    /// Drops what is in the input that was written and no step looks at: the certificates, and the points on ranks that write nothing
+    /// and change no grid.
+    fn forget_input(&mut self) {
+        self.body.certificates = vec![];
+        if !self.writes() && self.scene.regrids.is_empty() {
+            self.body.cloud = Cloud::default();
+        }
     }
 
     /// Keeps what is to be kept of a run that has ended, and writes its summary; how it ended.

@@ -28,18 +28,19 @@ impl Scene {
         }
         let n = scheme.operators.nodes();
         let components = self.components();
-        let mut cells = vec![0.0; mesh.cells.len() * components * n];
+        let blocks = &scheme.operators.blocks;
+        let mut state = State { time: self.start, ..State::at_rest(blocks, n, components) };
         let material = self.material_of_cells(mesh);
         let start = Start::of(self, mesh, &scheme.operators.line)?;
-        for (cell, values) in cells.chunks_mut(components * n).enumerate() {
+        for (cell, &(block, lane)) in blocks.slot.iter().enumerate() {
+            let values = &mut state.u[block * components * n..];
             let density = scheme.laws[material[cell]].density();
             for a in 0..n {
                 let (f, v, displacement) = start.at(cell, a)?;
                 let u = [f[0], f[1], f[2], f[3], density * v[0], density * v[1]].into_iter().chain(displacement);
-                u.take(components).enumerate().for_each(|(k, u)| values[k * n + a] = u);
+                u.take(components).enumerate().for_each(|(k, u)| values[k * n + a].0[lane] = u);
             }
         }
-        let mut state = State { time: self.start, ..State::pack(&scheme.operators.blocks, n, components, &cells) };
         if start.fields.is_some() {
             state = state.holding_from_now(n);
         }

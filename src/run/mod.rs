@@ -186,7 +186,12 @@ impl Run<'_, '_> {
             true => motion = motion.with_forces(self.scheme),
             false => motion.state.received = vec![],
         }
-        let end = self.go(pause, keep, &mut motion, report);
+        let mut end = self.go(pause, keep, &mut motion, report);
+        match &mut end {
+            Err(Stop::Unstable(lost)) => motion.complete(self.scheme, &mut lost.kept),
+            Err(Stop::EnergyMade(made)) => motion.complete(self.scheme, &mut made.1),
+            _ => {}
+        }
         motion.make_whole(self.scheme);
         *state = motion.state;
         end
@@ -216,6 +221,7 @@ impl Run<'_, '_> {
     ) -> Result<End, Stop> {
         self.begin(keep.as_deref_mut(), motion)?;
         report.start(self.scheme, motion, &self.settings);
+        motion.keep_own(self.scheme, pause.looks());
         let mut kept = Kept::new(&motion.state, &motion.survey);
         let h = self.mesh.smallest_h();
         while motion.state.time < self.settings.end {
@@ -227,8 +233,8 @@ impl Run<'_, '_> {
             let next = end_of_step(time, dt, stop);
             check_advance([time, next, self.settings.end], [stable, dt], h)?;
             let observes = motion.is_shared() && self.observes(&motion.state, dt);
-            if motion.is_shared() && (pause.looks() || kept.is_due(&motion.state) || observes) {
-                motion.make_whole(self.scheme);
+            if motion.is_shared() && (pause.looks() || observes) {
+                motion.show(self.scheme, pause.looks());
             }
             let observed = self.observe(motion, report, dt);
             if observes { motion.agree(observed) } else { observed }?;
@@ -243,9 +249,6 @@ impl Run<'_, '_> {
             }
             let (former, survey) = motion.former();
             kept.look(former, survey);
-            if motion.is_shared() && report.looks() {
-                motion.make_whole(self.scheme);
-            }
             match report.count(self.scheme, dt, motion) {
                 Some(Alarm::Stop(made)) => return Err(Stop::EnergyMade(Box::new((made, kept.earlier())))),
                 Some(Alarm::Warning(made)) => self.observers.iter_mut().for_each(|o| o.energy_made(&made)),
@@ -278,7 +281,7 @@ impl Run<'_, '_> {
         // A rank that is asked to stop may be another one than that which keeps the run.
         let [stops, due, is_kept] = motion.any([stops, due, keep.is_some()]);
         if due || (stops && is_kept) {
-            motion.make_whole(self.scheme);
+            motion.show(self.scheme, false);
             let kept = keep.map_or(Ok(()), |keep| self.keep(keep, (pause, motion), report));
             motion.agree(kept)?;
         }
@@ -293,7 +296,7 @@ impl Run<'_, '_> {
         report: &Report,
     ) -> Result<(), Error> {
         let parts = keep::parts(motion, report, pause, &mut self.observers)?;
-        keep.keep(&Moment { scheme: self.scheme, state: &motion.state, parts })
+        keep.keep(&Moment { scheme: self.scheme, state: motion.seen(), parts })
     }
 
     /// The time that a step must not pass: the end, or an exact output before it.
@@ -328,5 +331,5 @@ impl Run<'_, '_> {
 /// What observers and pauses see before a step of `dt`.
 fn view<'a>(mesh: &'a Mesh, scheme: &'a Scheme, motion: &'a Motion, balance: Option<&'a Balance>, dt: f64) -> View<'a> {
     let treated = motion.work.treated();
-    View { mesh, scheme, state: &motion.state, survey: &motion.survey, balance, treated, dt }
+    View { mesh, scheme, state: motion.seen(), survey: &motion.survey, balance, treated, dt }
 }

@@ -142,11 +142,6 @@ impl Report {
         self.watch.step(scheme, state, work, self.balance.as_ref())
     }
 
-    /// Whether [`Report::count`] looks at the state after the step under way.
-    pub(super) fn looks(&self) -> bool {
-        self.watch.looks_next()
-    }
-
     /// Counts what a survey has seen.
     pub(super) fn see(&mut self, survey: &Survey) {
         self.min_j = self.min_j.min(survey.min_j);

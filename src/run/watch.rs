@@ -105,11 +105,6 @@ impl Watch {
         self.warned
     }
 
-    /// Whether [`Watch::step`] looks at the energy after the step under way.
-    pub fn looks_next(&self) -> bool {
-        self.limits.is_some() && (self.steps + 1).is_multiple_of(EVERY)
-    }
-
     /// Books the last step, which led to `state`, and looks at the energy where that is due.
     pub fn step(
         &mut self,
@@ -129,7 +124,7 @@ impl Watch {
         }
         let energy = match balance {
             Some(balance) => balance.energy,
-            None => scheme.energy(state, work, &mut self.cells),
+            None => work.energy(scheme, state, &mut self.cells),
         };
         self.stored = work.stored_in_contact(scheme, state);
         self.between_nodes = scheme.samples_between_nodes();

@@ -64,14 +64,13 @@ impl<'a> Block<'a> {
     /// Its unknowns in a state, [component][node].
     #[inline]
     pub fn unknowns<'s>(&self, state: &'s State) -> &'s [F8] {
-        let stride = state.components * self.scheme.operators.nodes();
-        &state.u[stride * self.number..stride * (self.number + 1)]
+        state.of_block(self.number, self.scheme.operators.nodes())
     }
 
     /// Its internal variables in a state.
     #[inline]
     pub fn internal<'s>(&self, state: &'s State) -> &'s [F8] {
-        self.scheme.histories.of(&state.internal, self.number)
+        self.scheme.histories.of(state, self.number)
     }
 
     /// dt b_s: what the rate of the stage counts in the step.

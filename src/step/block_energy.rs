@@ -97,17 +97,40 @@ impl Scheme {
     /// Kinetic, strain and dissipated energy of a state, J/m: [`super::Totals::accounted`] at a fraction of the cost. `cells` is
     /// memory for it; the blocks are added by an exact sum.
     pub fn energy(&self, state: &State, memory: &Memory, cells: &mut Vec<F8>) -> f64 {
-        let blocks = &self.operators.blocks;
-        let stride = state.components * self.operators.nodes();
-        cells.resize(blocks.len(), F8::ZERO);
-        cells.par_iter_mut().enumerate().for_each(|(block, out)| {
+        cells.resize(self.operators.blocks.len(), F8::ZERO);
+        self.energy_of_cells((state, 0), memory, cells);
+        self.sum_of_cells(cells)
+    }
+
+    /// The energy of the cells of some blocks from the `first` on.
+    fn energy_of_cells(&self, (state, first): (&State, usize), memory: &Memory, cells: &mut [F8]) {
+        cells.par_iter_mut().enumerate().for_each(|(number, out)| {
+            let block = first + number;
             *out = with_scratch(&memory.scratch, |scratch| {
-                let u = &state.u[stride * block..stride * (block + 1)];
-                let internal = self.histories.of(&state.internal, block);
+                let u = state.of_block(block, self.operators.nodes());
+                let internal = self.histories.of(state, block);
                 let creep = self.creep_of(state, block);
                 BlockEnergy { scheme: self, block, u, internal, creep, dt: 0.0, scratch }.find()
             });
         });
-        exact_sum(cells.iter().zip(&blocks.count).map(|(energy, &count)| energy.0[..count].iter().sum()))
+    }
+
+    fn sum_of_cells(&self, cells: &[F8]) -> f64 {
+        exact_sum(cells.iter().zip(&self.operators.blocks.count).map(|(cells, &count)| cells.0[..count].iter().sum()))
+    }
+}
+
+impl Memory {
+    /// [`Scheme::energy`] of a state of which each rank may have its part. All ranks call it.
+    pub fn energy(&mut self, scheme: &Scheme, state: &State, cells: &mut Vec<F8>) -> f64 {
+        let Some(own) = self.tiles.ranks.as_ref().map(|ranks| ranks.own()) else {
+            return scheme.energy(state, self, cells);
+        };
+        cells.resize(scheme.operators.blocks.len(), F8::ZERO);
+        scheme.energy_of_cells((state, own.start), self, &mut cells[own]);
+        if let Some(ranks) = &mut self.tiles.ranks {
+            ranks.gather(cells, |block| block);
+        }
+        scheme.sum_of_cells(cells)
     }
 }

@@ -78,13 +78,12 @@ pub struct Made<'a> {
 impl<'a> Made<'a> {
     /// The unknowns of a block, `[component][node]`.
     pub fn unknowns(&self, block: usize) -> &'a [F8] {
-        let stride = self.state.components * self.scheme.operators.nodes();
-        &self.state.u[stride * block..stride * (block + 1)]
+        self.state.of_block(block, self.scheme.operators.nodes())
     }
 
     /// The internal variables of a block, `[point][variable]`.
     pub fn internal(&self, block: usize) -> &'a [F8] {
-        self.scheme.histories.of(&self.state.internal, block)
+        self.scheme.histories.of(self.state, block)
     }
 }
 

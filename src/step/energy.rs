@@ -178,7 +178,7 @@ impl Scheme {
 
     fn totals_of(&self, state: &State, block: usize, lane: usize) -> Totals {
         let (n, law) = (self.operators.nodes(), &self.laws[self.operators.blocks.material[block]]);
-        let u = &state.u[block * state.components * n..];
+        let u = state.of_block(block, n);
         let memory = law.has_memory();
         let mut sum = Totals::empty(state);
         let (mut drift, mut area) = (0.0, 0.0);
@@ -216,7 +216,7 @@ impl Scheme {
     fn deformation_at_points(&self, state: &State, block: usize) -> Vec<F8> {
         let count = self.histories.weights(block).len();
         let (n, m) = (self.operators.nodes(), self.operators.line.m);
-        let u = &state.u[block * state.components * n..][..DEFORMATION * n];
+        let u = &state.of_block(block, n)[..DEFORMATION * n];
         let mut points = vec![F8::ZERO; DEFORMATION * count];
         match self.operators.points.as_ref().map(|points| (&points.pool, points.pool.share[block])) {
             _ if count == 0 => {}
@@ -250,10 +250,10 @@ impl Scheme {
     /// x = X + u of node a, where the displacement is known.
     fn position(&self, state: &State, block: usize, lane: usize, a: usize) -> Option<[f64; 2]> {
         let (operators, n) = (&self.operators, self.operators.nodes());
-        let at = (block * state.components + UNKNOWNS) * n + a;
         state.has_displacement().then(|| {
             let x = map::position(&operators.geometry.map_of(block, lane), operators.line.basis.node_2d(a));
-            [x[0] + state.u[at].0[lane], x[1] + state.u[at + n].0[lane]]
+            let u = &state.of_block(block, n)[UNKNOWNS * n + a..];
+            [x[0] + u[0].0[lane], x[1] + u[n].0[lane]]
         })
     }
 

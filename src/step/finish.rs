@@ -134,7 +134,7 @@ impl Finish<'_> {
         let (law, Self { block: Block { scheme, number: block, stage }, state, scratch, .. }) =
             (self.block.law(), self);
         let New { u, internal, speed, worst } = new;
-        let history = History::Before(scheme.histories.of(&state.internal, block), internal, stage.dt);
+        let history = History::Before(scheme.histories.of(state, block), internal, stage.dt);
         law.block().examine(scheme.kernel, Examine { scheme, block, u, history, scratch, speed, worst });
     }
 

@@ -101,8 +101,7 @@ impl Scheme {
     /// All losses of a lane at its nodes and points.
     pub(super) fn losses(&self, state: &State, block: usize, lane: usize, see: &mut dyn FnMut(Site, LossKind)) {
         let n = self.operators.nodes();
-        let stride = state.components * n;
-        let u = &state.u[block * stride..(block + 1) * stride];
+        let u = state.of_block(block, n);
         let law = &self.laws[self.operators.blocks.material[block]];
         let number = |k: usize, a: usize| u[k * n + a].0[lane];
         for a in 0..n {

@@ -59,10 +59,17 @@ impl Histories {
         between(&self.first, block)
     }
 
-    /// Those of a block, none for an elastic one.
+    /// Those of a block in a state, none for an elastic one.
     #[inline]
-    pub fn of<'a>(&self, internal: &'a [F8], block: usize) -> &'a [F8] {
-        &internal[self.range(block)]
+    pub fn of<'a>(&self, state: &'a State, block: usize) -> &'a [F8] {
+        let Range { start, end } = self.range(block);
+        // An elastic block among others lies before the first number, too.
+        if start == end { &[] } else { &state.internal[start - state.part.internal..end - state.part.internal] }
+    }
+
+    /// Where those from a block on begin, also behind the last block.
+    pub(super) fn start(&self, block: usize) -> usize {
+        self.first.get(block).copied().unwrap_or(0)
     }
 
     /// w_p = int chi_p dX over the cell, m^2, for the points of a block; none for an elastic one. The integral over a cell of
@@ -125,7 +132,7 @@ impl Scheme {
         let law = &self.laws[self.operators.blocks.material[block]];
         let mut out = law.virgin();
         let count = law.history_len();
-        let own = self.histories.of(&state.internal, block);
+        let own = self.histories.of(state, block);
         for (out, stored) in out.iter_mut().zip(own.iter().skip(count * point).take(count)) {
             *out = stored.0[lane];
         }
@@ -145,7 +152,9 @@ impl Scheme {
     /// All internal variables: for each cell in the order of the mesh and each of its points in the order of the cloud
     /// (ADER-DGFEM, RK-DGFEM: of the nodes) those of the cell's law, none for elastic ones.
     pub fn internal_of(&self, state: &State) -> Vec<f64> {
-        let mut out = Vec::new();
+        let mut numbers = 0;
+        self.each_point(|_, _, _, count| numbers += count);
+        let mut out = Vec::with_capacity(numbers);
         self.each_point(|block, lane, point, count| {
             out.extend_from_slice(&self.internal_at(state, block, lane, point)[..count]);
         });

@@ -42,6 +42,7 @@ mod motion;
 mod numbers;
 mod obstacles;
 mod outside;
+mod parts;
 pub mod phase;
 mod predictor;
 mod ranks;
@@ -151,10 +152,11 @@ impl Work {
                 phases: phase::Ticks::of(2 * operators.blocks.len() * scheme.stages()),
             })
         };
+        let tiles = tile_memory::Tiles::new(scheme, state.components * operators.nodes());
         Self {
-            next: state.clone(),
+            next: Self::next_of(&tiles, scheme, state),
             speed: vec![survey::Speeds::default(); operators.blocks.len()],
-            tiles: tile_memory::Tiles::new(scheme, state.components * operators.nodes()),
+            tiles,
             outside: outside::Outside::new(scheme),
             balance: None,
             turning_loss: 0.0,

@@ -1,5 +1,6 @@
 //! A body in motion: its state, what the survey tells of it, and the memory of the steps.
 
+use super::shared::See;
 use super::{Loss, Scheme, Speeds, Survey, Work};
 use crate::built;
 use crate::error::Error;
@@ -19,6 +20,8 @@ pub struct Motion {
     pub work: Work,
     /// The survey of the state that the last step made, or after it of the state before that step.
     other: Survey,
+    /// The whole state where `state` is the part of a rank and somebody looks.
+    pub(super) shown: See,
 }
 
 impl Motion {
@@ -32,6 +35,21 @@ impl Motion {
         Ok(motion)
     }
 
+    /// Begins with a copy of a whole state; of several ranks each copies its part only.
+    ///
+    /// # Errors
+    /// As [`Motion::new`].
+    pub fn of_copy(scheme: &Scheme, state: &State) -> Result<Self, Loss> {
+        let is_ready = state.boundary.len() == scheme.boundary_memory.len() && scheme.has_room_for_creep(state);
+        if scheme.exchange.is_none() || !is_ready {
+            return Self::new(scheme, state.clone());
+        }
+        let work = Work::new(scheme, state);
+        let (mut survey, own) = (Survey::default(), work.next.clone());
+        scheme.survey_all(state, &work, &mut survey)?;
+        Ok(Self { state: own, work, survey, other: Survey::default(), shown: See::default() })
+    }
+
     /// Begins with `state`, which [`Motion::survey`] has to look at before the first step.
     pub fn unsurveyed(scheme: &Scheme, state: State) -> Self {
         let mut state = state;
@@ -41,7 +59,7 @@ impl Motion {
         }
         scheme.make_room_for_creep(&mut state);
         let work = Work::new(scheme, &state);
-        Self { state, work, survey: Survey::default(), other: Survey::default() }
+        Self { state, work, survey: Survey::default(), other: Survey::default(), shown: See::default() }
     }
 
     /// The same with a balance of energy, see [`Work::with_balance`].
@@ -117,7 +135,8 @@ impl Motion {
 
     /// Makes the state after a step, with cells rescued where the scheme says so.
     fn make(&mut self, scheme: &Scheme, dt: f64, time: f64) -> Result<(), Loss> {
-        let Self { state, survey, work, other } = self;
+        self.shown = See::default();
+        let Self { state, survey, work, other, .. } = self;
         let result = match scheme.rescue {
             Some(rescue) if built::CORRECTIONS => scheme.step_with(rescue, (state, survey), (dt, time), work, other),
             _ => {

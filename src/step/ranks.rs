@@ -4,31 +4,30 @@
 //! between phases ranks send each other those that they need. Nothing is computed twice and nothing in another order, so that the
 //! bits do not depend on the number of ranks.
 //!
-//! Each rank has memory for the whole state. After a step it knows its own blocks; [`super::Motion::make_whole`] fetches the others where
-//! somebody looks at them. Corrections, contact, and angular momentum that is kept look at the whole body in each step.
+//! A rank has the unknowns of its own blocks. Where somebody looks at those of others they are fetched (`parts`). Corrections, contact,
+//! and angular momentum that is kept look at the whole body in each step: then each rank has memory for the whole state.
 
+use super::Scheme;
 use super::numbers::Numbers;
 use super::received::ReceivedBySide;
 use super::tiles::{Plan, Slot};
 use super::worst::Worst;
-use super::{Scheme, Speeds};
 use crate::error::Result;
 use crate::exchange::{Exchange, agree, numbers_of_all};
 use crate::lane::{F8, LANES};
 use crate::mesh::FACES;
 use crate::operators::Neighbour;
-use crate::state::State;
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// What a rank knows of itself and the others.
 pub(super) struct Ranks {
-    exchange: Arc<dyn Exchange>,
+    pub(super) exchange: Arc<dyn Exchange>,
     /// The tiles of this rank.
     pub tiles: Range<usize>,
     /// The first block of each rank, and the end of the last one.
-    blocks: Vec<usize>,
+    pub(super) blocks: Vec<usize>,
     /// What is sent and received after each phase: `[phase][rank]`.
     send: Vec<Vec<Vec<Face>>>,
     receive: Vec<Vec<Vec<Face>>>,
@@ -36,6 +35,8 @@ pub(super) struct Ranks {
     letters: [Vec<Vec<f64>>; 2],
     /// Numbers under way to all.
     all: Vec<f64>,
+    /// Whether states are parts: each rank has those of its own blocks.
+    pub parts: bool,
     /// Whether the last step has left this rank with the blocks of all.
     pub whole: bool,
 }
@@ -59,7 +60,7 @@ impl Face {
 impl Ranks {
     /// Those of a scheme, for a plan of so many tiles a rank; none where it runs alone.
     pub fn new(scheme: &Scheme, graph: &[Vec<usize>], plan: &Plan, tiles: usize) -> Option<Box<Self>> {
-        let exchange = scheme.exchange.clone()?;
+        let exchange = scheme.exchange.clone().filter(|exchange| exchange.ranks() > 1)?;
         let (count, blocks) = (plan.tiles.len(), scheme.operators.blocks.len());
         let of = |rank: usize| (rank * tiles).min(count)..((rank + 1) * tiles).min(count);
         let first = |rank: usize| plan.tiles.get(rank * tiles).map_or(blocks, |tile| tile.range.start);
@@ -70,6 +71,7 @@ impl Ranks {
             receive: vec![vec![vec![]; exchange.ranks()]; plan.phases()],
             letters: [0, 1].map(|_| vec![vec![]; exchange.ranks()]),
             all: vec![],
+            parts: !scheme.looks_at_all(),
             whole: true,
             exchange,
         };
@@ -205,28 +207,9 @@ impl Ranks {
 }
 
 impl Ranks {
-    /// Fetches the blocks of other ranks of a state and its speeds.
-    pub fn state(&mut self, scheme: &Scheme, state: &mut State, speed: &mut [Speeds]) {
-        let stride = state.components * scheme.operators.nodes();
-        self.gather(&mut state.u, |block| block * stride);
-        if !state.internal.is_empty() {
-            let blocks = scheme.operators.blocks.len();
-            let end = scheme.histories.len();
-            self.gather(
-                &mut state.internal,
-                |block| if block < blocks { scheme.histories.range(block).start } else { end },
-            );
-        }
-        if !state.boundary.is_empty() {
-            let (blocks, end) = (scheme.operators.blocks.len(), scheme.boundary_memory.len());
-            let first = |block: usize| if block < blocks { scheme.boundary_memory.range(block).start } else { end };
-            self.gather(&mut state.boundary, first);
-        }
-        if !state.creep.is_empty() {
-            self.gather(&mut state.creep, |block| block * scheme.creep_of_block());
-        }
-        self.gather(speed, |block| block);
-        self.whole = true;
+    /// Whether this is rank 0.
+    pub fn is_first(&self) -> bool {
+        self.exchange.rank() == 0
     }
 
     /// The blocks of this rank.

@@ -14,7 +14,7 @@ use super::{Scheme, Scratch, Speeds, Stage, Survey, Work, across, with_scratch};
 use crate::built;
 use crate::lane::{self, F8, ticks};
 use crate::operators::Operators;
-use crate::state::State;
+use crate::state::{Part, State};
 use std::sync::Mutex;
 
 /// So many blocks ahead memory is asked for.
@@ -201,22 +201,23 @@ impl<'a> Out<'a> {
         Out { first: *first, u, internal, speed, worst, external, forces, torques, balance, memory, creep }
     }
 
-    /// Those from a block on.
-    fn from(self, block: usize, (scheme, state): (&Scheme, &State), outside: &[u32]) -> Self {
+    /// Those from a block on, of a state of these `components`; where it is a `part` it begins there.
+    fn from(self, block: usize, scheme: &Scheme, (components, part): (usize, Part), outside: &[u32]) -> Self {
         let (history, memory) = (scheme.histories.range(block).start, scheme.boundary_memory.range(block).start);
-        let stride = state.components * scheme.operators.nodes();
-        self.split(block, [stride, scheme.creep_of_block()], [history, outside[block] as usize, memory]).1
+        let before = block - part.block;
+        let numbers = [components * scheme.operators.nodes(), scheme.creep_of_block()].map(|count| count * before);
+        self.split(block, numbers, [history - part.internal, outside[block] as usize, memory]).1
     }
 
-    /// Those of the first `blocks`, with so many unknowns and numbers of the creep a block, and with so many internal variables, entries of `external` and numbers of `memory`, and the rest.
+    /// Those of the first `blocks`, with so many unknowns and numbers of the creep, and with so many internal variables, entries of `external` and numbers of `memory`, and the rest.
     fn split(
         self,
         blocks: usize,
-        [stride, creep]: [usize; 2],
+        [unknowns, creep]: [usize; 2],
         [internal, external, memory]: [usize; 3],
     ) -> (Self, Self) {
         let (first, second) = (self.first, self.first + blocks);
-        let (u, u2) = self.u.split_at_mut(blocks * stride);
+        let (u, u2) = self.u.split_at_mut(unknowns);
         let (internal, internal2) = self.internal.split_at_mut(internal);
         let (speed, speed2) = self.speed.split_at_mut(blocks);
         let (worst, worst2) = self.worst.split_at_mut(blocks.min(self.worst.len()));
@@ -225,7 +226,7 @@ impl<'a> Out<'a> {
         let (external, external2) = self.external.split_at_mut(external);
         let (balance, balance2) = self.balance.map(|balance| balance.split_at_mut(blocks)).unzip();
         let (memory, memory2) = self.memory.split_at_mut(memory);
-        let (creep, creep2) = self.creep.split_at_mut((blocks * creep).min(self.creep.len()));
+        let (creep, creep2) = self.creep.split_at_mut(creep.min(self.creep.len()));
         let left = Out { first, u, internal, speed, worst, external, forces, torques, balance, memory, creep };
         let (first, u, internal, speed, memory, creep) = (second, u2, internal2, speed2, memory2, creep2);
         let (worst, external, forces, torques, balance) = (worst2, external2, forces2, torques2, balance2);
@@ -275,7 +276,8 @@ impl<B: Fn(Begin) + Copy + Send + Sync, F: Fn(Finish) + Copy + Send + Sync> Step
                 let memory = memory(middle) - memory(start);
                 let numbers = [first(middle) - first(start), entries(middle) - entries(start), memory];
                 let stride = self.state.components * self.scheme.operators.nodes();
-                let (one, two) = out.split(middle - start, [stride, self.scheme.creep_of_block()], numbers);
+                let unknowns = [stride, self.scheme.creep_of_block()].map(|count| count * (middle - start));
+                let (one, two) = out.split(middle - start, unknowns, numbers);
                 rayon::join(|| self.run(left, shown, one), || self.run(right, shown2, two));
             }
             _ => {}
@@ -295,6 +297,7 @@ impl Scheme {
     ) {
         let Work { tiles, next, speed, outside, balance, scratch, corrections, meetings, .. } = work;
         let Tiles { tiles, phases, shown, slots, far, ranks, .. } = tiles;
+        let held = (next.components, next.part);
         let (u, internal, balance) = (&mut next.u[..], &mut next.internal[..], balance.as_deref_mut());
         let (worst, mut starts) = match corrections.as_deref_mut() {
             Some(memory) => memory.parts(),
@@ -310,7 +313,7 @@ impl Scheme {
         let count = tiles.len();
         let own = ranks.as_ref().map_or(0..count, |ranks| ranks.tiles.clone());
         if let Some(first) = tiles[own.clone()].first().filter(|_| own.start > 0) {
-            out = out.from(first.plan.range.start, (self, state), &outside.first);
+            out = out.from(first.plan.range.start, self, held, &outside.first);
         }
         for phase in 0..*phases {
             let start = match &mut starts {
@@ -350,8 +353,7 @@ impl Scheme {
     /// Asks for what the stages of a block will read.
     #[inline]
     fn ask_for(&self, state: &State, block: usize) {
-        let stride = state.components * self.operators.nodes();
-        lane::prefetch(&state.u[stride * block..stride * (block + 1)]);
+        lane::prefetch(state.of_block(block, self.operators.nodes()));
         lane::prefetch(&self.operators.geometry.blocks[block..=block]);
     }
 

@@ -91,15 +91,24 @@ impl Scheme {
 
     /// The creep of the faces of a block in a state; empty where they have no springs.
     pub(super) fn creep_of<'s>(&self, state: &'s State, block: usize) -> &'s [F8] {
-        let count = self.creep_of_block();
-        state.creep.get(count * block..count * (block + 1)).unwrap_or_default()
+        let (count, at) = (self.creep_of_block(), block - state.part.block);
+        state.creep.get(count * at..count * (at + 1)).unwrap_or_default()
+    }
+
+    /// Numbers of the creep of a whole state.
+    fn numbers_of_creep(&self) -> usize {
+        if self.keeps_creep() { self.creep_of_block() * self.operators.blocks.len() } else { 0 }
+    }
+
+    /// Whether a whole state has the creep of its faces.
+    pub(super) fn has_room_for_creep(&self, state: &State) -> bool {
+        state.creep.len() == self.numbers_of_creep()
     }
 
     /// A state with room for the creep of its faces, which begins at 0 where the state has none.
     pub(super) fn make_room_for_creep(&self, state: &mut State) {
-        let wanted = if self.keeps_creep() { self.creep_of_block() * self.operators.blocks.len() } else { 0 };
-        if state.creep.len() != wanted {
-            state.creep = vec![F8::ZERO; wanted];
+        if !self.has_room_for_creep(state) {
+            state.creep = vec![F8::ZERO; self.numbers_of_creep()];
         }
     }
 

@@ -58,9 +58,8 @@ impl Scheme {
         speed: &mut Speeds,
     ) -> Worst {
         with_scratch(scratch, |scratch| {
-            let stride = state.components * self.operators.nodes();
-            let u = &state.u[stride * block..stride * (block + 1)];
-            let internal = self.histories.of(&state.internal, block);
+            let u = state.of_block(block, self.operators.nodes());
+            let internal = self.histories.of(state, block);
             let (mut worst, history) = (Worst::NONE, History::Now(internal));
             let law = &self.laws[self.operators.blocks.material[block]];
             let examine = Examine { scheme: self, block, u, history, scratch, speed, worst: &mut worst };
@@ -81,7 +80,8 @@ impl Scheme {
         let worst = corrected.iter().fold(worst, |worst, block| worst.and(*block));
         if worst.lost != usize::MAX || worst.face.is_some() {
             // Where it was lost is told from the state.
-            memory.fetch(self);
+            let whole = memory.fetch(self);
+            return self.judge(worst, whole.as_ref().unwrap_or(&memory.next), out);
         }
         self.judge(worst, &memory.next, out)
     }
@@ -115,7 +115,7 @@ impl Scheme {
     /// The same of one lane.
     fn faces_of_lane(&self, state: &State, block: usize, lane: usize) -> FacePoint {
         let (line, n) = (&self.operators.line, self.operators.nodes());
-        let (m, u) = (line.m, &state.u[block * state.components * n..][..DEFORMATION * n]);
+        let (m, u) = (line.m, &state.of_block(block, n)[..DEFORMATION * n]);
         let mut worst = FacePoint { block, lane, at: [0; 2], j: f64::INFINITY };
         for face in 0..FACES {
             let ends = &line.ends[face % 2];

@@ -69,7 +69,7 @@ impl Given<'_> {
         with_scratch(scratch, |scratch| {
             *worst = Worst::NONE;
             let history = match renewed[block] {
-                true => History::Before(scheme.histories.of(&before.internal, block), internal, dt),
+                true => History::Before(scheme.histories.of(before, block), internal, dt),
                 false => History::Now(internal),
             };
             law.block().examine(scheme.kernel, Examine { scheme, block, u, history, scratch, speed, worst });
@@ -108,9 +108,8 @@ impl Scheme {
 
     /// The energy of the cells of a block, with what laws have dissipated, J/m.
     pub(in crate::step) fn energy_of_block(&self, state: &State, block: usize, scratch: &[Mutex<Scratch>]) -> F8 {
-        let stride = state.components * self.operators.nodes();
-        let u = &state.u[stride * block..stride * (block + 1)];
-        let internal = self.histories.of(&state.internal, block);
+        let u = state.of_block(block, self.operators.nodes());
+        let internal = self.histories.of(state, block);
         let creep = self.creep_of(state, block);
         with_scratch(scratch, |scratch| {
             BlockEnergy { scheme: self, block, u, internal, creep, dt: 0.0, scratch }.find()
