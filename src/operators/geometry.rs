@@ -37,6 +37,7 @@ impl Metric<F8> {
     }
 
     /// The map of the cell in one lane.
+    #[inline]
     pub fn lane(&self, lane: usize) -> Metric<f64> {
         let pair = |x: &[F8; 2]| x.map(|x| x.0[lane]);
         Metric {

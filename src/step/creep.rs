@@ -6,9 +6,8 @@
 //! is Y^-1 |da/dt|^2 (1 - k Y dt/2), above 0.
 
 use super::block::Block;
-use crate::boundary::GivesBack;
-use crate::lane::{F8, Lanes, load_array, store_array};
-use crate::operators::Neighbour;
+use crate::boundary::{FacePoint, GivesBack};
+use crate::lane::{F8, Lane, Lanes, load_array, store_array};
 use crate::riemann::{Medium, Riemann, Trace, creep, summed_impedance, tangent};
 use crate::state::UNKNOWNS;
 use crate::tensor::{AXES, DEFORMATION, dot, times};
@@ -39,6 +38,8 @@ pub(super) struct Springs<'a> {
     now: &'a mut [F8],
     /// What a rate counts in the step, s.
     dt: f64,
+    /// The power that the spring of the last lane at a boundary or at another material stores, W/m^2.
+    pub stored: f64,
 }
 
 impl<'a> Springs<'a> {
@@ -55,43 +56,40 @@ impl<'a> Springs<'a> {
             memory.copy_from_slice(now);
             memory
         };
-        Some(Self { pull: Pull { start, modulus }, before, now, dt: block.factor() })
+        Some(Self { pull: Pull { start, modulus }, before, now, dt: block.factor(), stored: 0.0 })
     }
 
     /// The same for a shorter time.
     pub fn again(&mut self) -> Springs<'_> {
-        Springs { pull: self.pull, before: self.before, now: self.now, dt: self.dt }
+        Springs { pull: self.pull, before: self.before, now: self.now, dt: self.dt, stored: 0.0 }
     }
 
-    /// A point between two cells of one law: moves a, and takes the pull of the spring out of what is lifted.
+    /// A point between two cells of one law with the `admittance` Y: moves a, and takes the pull of the spring out of what is `lifted`.
+    /// `forgotten` is (1 + epsilon)/l.
     #[inline(always)]
-    pub fn act<L: Lanes, R: Riemann>(
+    pub fn act<L: Lanes>(
         &mut self,
         at: usize,
-        riemann: &R,
-        sides: [&Trace<L>; 2],
-        (normal, length): ([L; 2], L),
-        medium: &Medium<L>,
-        lift: &mut [F8; UNKNOWNS],
+        [minus, plus]: [&Trace<L>; 2],
+        admittance: L,
+        (normal, forgotten): ([L; 2], L),
+        lifted: &mut [L; UNKNOWNS],
     ) {
-        let point = Point::new(riemann, sides, medium);
+        let rotation = rotation_of(minus, plus);
         // What is lifted has l v*, and v* has -Y k R a with k = modulus/l.
-        let pull = self.pull.of::<L>(at, point.rotation);
-        let mut lifted = load_array::<L, UNKNOWNS>(lift);
+        let pull = self.pull.of::<L>(at, rotation);
         for i in 0..AXES {
-            let back = point.admittance * pull[i];
+            let back = admittance * pull[i];
             for k in 0..AXES {
                 lifted[AXES * i + k] = back.mul_add(normal[k], lifted[AXES * i + k]);
             }
         }
-        store_array(lifted, lift);
-        let (forgotten, [minus, plus]) = (L::splat(1.0 + creep::FORGETS) / length, sides);
         // No closures: the compiler need not inline them, and a call stands without the features of the processor.
         let mut moved = [L::zero(); AXES];
         for i in 0..AXES {
-            moved[i] = point.admittance * (plus.t[i] - minus.t[i] - pull[i] * forgotten);
+            moved[i] = admittance * (plus.t[i] - minus.t[i] - pull[i] * forgotten);
         }
-        let rate = creep::turned_back(point.rotation, moved);
+        let rate = creep::turned_back(rotation, moved);
         for (i, rate) in rate.iter().enumerate() {
             let before = L::load(&self.before[AXES * at + i]);
             L::splat(self.dt).mul_add(*rate, before).store(&mut self.now[AXES * at + i]);
@@ -103,10 +101,11 @@ impl<'a> Springs<'a> {
         for k in AXES * at..AXES * (at + 1) {
             self.now[k].0[lane] = self.before[k].0[lane];
         }
+        self.stored = 0.0;
     }
 
-    /// A point of a lane whose face has moved with v* - mean v, m/s.
-    pub fn follow(&mut self, at: usize, lane: usize, rotation: [f64; 2], velocity: [f64; 2]) {
+    /// A point of a lane whose creep grows by R^T `velocity`, m/s.
+    fn follow(&mut self, at: usize, lane: usize, rotation: [f64; 2], velocity: [f64; 2]) {
         let rate = creep::turned_back(rotation, velocity);
         for (i, rate) in rate.iter().enumerate() {
             let k = AXES * at + i;
@@ -124,7 +123,7 @@ impl Pull<'_> {
         [modulus * one, modulus * two]
     }
 
-    /// k R a at a point between two cells of one law, Pa; adds what it does to Flux*.
+    /// k R a . (R da/dt) at a point between two cells of one law, the power that its spring stores, W/m^2; adds what k R a does to Flux*.
     #[inline(always)]
     pub fn meter<L: Lanes, R: Riemann>(
         &self,
@@ -134,19 +133,21 @@ impl Pull<'_> {
         (normal, length): ([L; 2], L),
         medium: &Medium<L>,
         flux: &mut [F8; UNKNOWNS],
-    ) -> [L; 2] {
-        let point = Point::new(riemann, sides, medium);
-        let inverse = L::splat(1.0) / length;
-        let [one, two] = self.of::<L>(at, point.rotation);
-        let pull = [one * inverse, two * inverse];
-        let mut sum = load_array::<L, UNKNOWNS>(flux);
+    ) -> L {
+        let ([minus, plus], inverse) = (sides, L::splat(1.0) / length);
+        let admittance = riemann.admittance(minus, plus, medium);
+        let [one, two] = self.of::<L>(at, rotation_of(minus, plus));
+        let (pull, grows) = ([one * inverse, two * inverse], L::splat(1.0 + creep::FORGETS));
+        let (mut sum, mut stored) = (load_array::<L, UNKNOWNS>(flux), L::zero());
         for i in 0..AXES {
+            let back = admittance * pull[i];
             for k in 0..AXES {
-                sum[AXES * i + k] = (point.admittance * pull[i]).mul_add(normal[k], sum[AXES * i + k]);
+                sum[AXES * i + k] = back.mul_add(normal[k], sum[AXES * i + k]);
             }
+            stored = back.mul_add(plus.t[i] - minus.t[i] - grows * pull[i], stored);
         }
         store_array(sum, flux);
-        pull
+        stored
     }
 
     /// k R a in a lane, Pa.
@@ -160,21 +161,26 @@ impl Pull<'_> {
 pub(super) enum Pulling<'a, 'b> {
     /// They move with their faces.
     Moving(&'b mut Springs<'a>),
-    /// They only pull.
-    Still(Pull<'a>),
+    /// They only pull; what they store, W/m^2, is out.
+    Still(Pull<'a>, &'b mut f64),
 }
 
 impl Pulling<'_, '_> {
     fn pull(&self) -> Pull<'_> {
         match self {
             Pulling::Moving(springs) => springs.pull,
-            Pulling::Still(pull) => *pull,
+            Pulling::Still(pull, _) => *pull,
         }
     }
 
-    fn follow(self, at: usize, lane: usize, rotation: [f64; 2], velocity: [f64; 2]) {
-        if let Pulling::Moving(springs) = self {
-            springs.follow(at, lane, rotation, velocity);
+    /// The face moves by R da/dt = `velocity`, m/s, against k R a = `pull`, Pa.
+    fn follow(self, [at, lane]: [usize; 2], rotation: [f64; 2], velocity: [f64; 2], pull: [f64; 2]) {
+        match self {
+            Pulling::Moving(springs) => {
+                springs.follow(at, lane, rotation, velocity);
+                springs.stored = dot(pull, velocity);
+            }
+            Pulling::Still(_, stored) => *stored = dot(pull, velocity),
         }
     }
 }
@@ -189,27 +195,28 @@ impl Block<'_> {
     pub(super) fn pulled_at_boundary(
         &self,
         [face, point, lane]: [usize; 3],
-        how: GivesBack,
+        group: usize,
+        here: &FacePoint,
         inside: &Trace<f64>,
         springs: Pulling,
         flux: impl FnOnce(&Trace<f64>) -> [f64; UNKNOWNS],
     ) -> [f64; UNKNOWNS] {
-        let (metric, at) = (self.metric().lane(lane), face * self.scheme.operators.line.m + point);
-        let Neighbour::Boundary(group) = self.scheme.operators.blocks.neighbours[self.number][face][lane] else {
+        let how = self.scheme.gives_back(group);
+        if how == GivesBack::Nothing {
             return flux(inside);
-        };
-        let (normal, length) = (metric.normal(face), metric.length(face));
-        let stiffness = self.scheme.spring_at(group, self.material()) / length;
+        }
+        let (normal, at) = (here.normal, face * self.scheme.operators.line.m + point);
+        let stiffness = self.scheme.spring_at(group, self.material()) / self.metric().lane(lane).length(face);
+        let admittance = here.admittance(inside);
         if how == GivesBack::Along {
             // The mean of F and its image turns nowhere, and the pull is shared with the image. What the condition adds to the rows of F for the
             // jump of F to the image is no creep.
             let pull = springs.pull().of_lane(at, lane, [1.0, 0.0], 0.5 * stiffness);
             let (mut flux, along) = (flux(inside), tangent(normal));
-            let admittance = self.face_point(face, point, lane).admittance(inside);
             let back = admittance * dot(pull, along);
             (0..DEFORMATION).for_each(|k| flux[k] += back * along[k / 2] * normal[k % 2]);
             let velocity = -admittance * dot(inside.t, along) - (1.0 + creep::FORGETS) * back;
-            springs.follow(at, lane, [1.0, 0.0], along.map(|along| velocity * along));
+            springs.follow([at, lane], [1.0, 0.0], along.map(|along| velocity * along), pull);
             return flux;
         }
         let rotation = creep::rotation(inside.f);
@@ -217,8 +224,9 @@ impl Block<'_> {
         let seen = Trace { t: [0, 1].map(|i| inside.t[i] + pull[i]), ..*inside };
         let flux = flux(&seen);
         let back = times([flux[0], flux[1], flux[2], flux[3]], normal);
-        let forgets = creep::FORGETS * self.face_point(face, point, lane).admittance(inside);
-        springs.follow(at, lane, rotation, [0, 1].map(|i| -back[i] - inside.v[i] - forgets * pull[i]));
+        let forgets = creep::FORGETS * admittance;
+        let velocity = [0, 1].map(|i| -back[i] - inside.v[i] - forgets * pull[i]);
+        springs.follow([at, lane], rotation, velocity, pull);
         flux
     }
 
@@ -237,32 +245,20 @@ impl Block<'_> {
         if stiffness == 0.0 {
             return;
         }
-        let rotation = creep::rotation(std::array::from_fn(|k| minus.f[k] + plus.f[k]));
+        let rotation = rotation_of(minus, plus);
         let pull = springs.pull().of_lane(at, lane, rotation, stiffness);
         let density = [self.material(), material].map(|law| scheme.laws[law].density());
         let moved = |t: [f64; 2]| summed_impedance([minus, plus], normal, density).solve(t);
         let back = moved(pull);
         (0..DEFORMATION).for_each(|k| flux[k] += back[k / 2] * normal[k % 2]);
-        springs.follow(
-            at,
-            lane,
-            rotation,
-            moved([0, 1].map(|i| plus.t[i] - minus.t[i] - (1.0 + creep::FORGETS) * pull[i])),
-        );
+        let velocity = moved([0, 1].map(|i| plus.t[i] - minus.t[i] - (1.0 + creep::FORGETS) * pull[i]));
+        springs.follow([at, lane], rotation, velocity, pull);
     }
 }
 
-/// What springs see of a point between two cells of one law.
-struct Point<L> {
-    rotation: [L; 2],
-    admittance: L,
-}
-
-impl<L: Lanes> Point<L> {
-    #[inline(always)]
-    fn new<R: Riemann>(riemann: &R, [minus, plus]: [&Trace<L>; 2], medium: &Medium<L>) -> Self {
-        let (m, p) = (minus.f, plus.f);
-        let f = [m[0] + p[0], m[1] + p[1], m[2] + p[2], m[3] + p[3]];
-        Self { rotation: creep::rotation(f), admittance: riemann.admittance(minus, plus, medium) }
-    }
+/// R of the mean F of both sides.
+#[inline(always)]
+fn rotation_of<L: Lane>(minus: &Trace<L>, plus: &Trace<L>) -> [L; 2] {
+    let (m, p) = (minus.f, plus.f);
+    creep::rotation([m[0] + p[0], m[1] + p[1], m[2] + p[2], m[3] + p[3]])
 }

@@ -18,6 +18,31 @@ pub(super) fn moduli(laws: &[Law], flux: &Flux) -> Vec<f64> {
     if has_springs { laws.iter().map(modulus).collect() } else { vec![] }
 }
 
+/// How stiff the springs of the faces are, by law and by boundary group, found once: laws and conditions are dynamic calls away. Empty
+/// where faces have none.
+#[derive(Debug, Default)]
+pub(super) struct Stiffness {
+    /// beta M between two laws, Pa, [law][law].
+    between: Vec<f64>,
+    /// k l at a boundary, Pa, [law][group].
+    at_edges: Vec<f64>,
+    /// How the faces of a group give back what they creep.
+    how: Vec<GivesBack>,
+    /// Number of laws.
+    laws: usize,
+}
+
+impl Stiffness {
+    /// Of a scheme whose faces give back what they creep.
+    fn new(scheme: &Scheme) -> Self {
+        let laws = scheme.laws.len();
+        let how: Vec<_> = scheme.boundaries.iter().map(|condition| condition.gives_back()).collect();
+        let between = (0..laws * laws).map(|pair| scheme.find_between([pair / laws, pair % laws])).collect();
+        let at_edge = |law| how.iter().map(move |how| scheme.find_at_edge(*how, law));
+        Self { between, at_edges: (0..laws).flat_map(at_edge).collect(), how, laws }
+    }
+}
+
 /// What a face of a cell has at its other side.
 #[derive(PartialEq)]
 enum Behind {
@@ -40,12 +65,24 @@ impl Scheme {
                 "a law with internal variables has no springs in its faces: where it flows they would make energy";
             return Err(Error::input(what, "remove `springs` of [scheme], or give a part of the body another law"));
         }
-        Ok(Self { gives_back: true, ..self })
+        Ok(self.with_stiffness())
+    }
+
+    /// With springs whose stiffness is that of its laws and conditions.
+    pub(super) fn with_stiffness(self) -> Self {
+        let stiffness = Stiffness::new(&self);
+        Self { stiffness, ..self }
     }
 
     /// Whether springs give back what faces creep.
     pub fn has_springs(&self) -> bool {
-        self.gives_back
+        self.stiffness.laws > 0
+    }
+
+    /// How the faces of a boundary group give back what they creep, where the scheme has springs.
+    #[inline]
+    pub(super) fn gives_back(&self, group: usize) -> GivesBack {
+        self.stiffness.how[group]
     }
 
     /// How many cells have springs in their faces.
@@ -60,11 +97,23 @@ impl Scheme {
         (0..self.moduli.len()).any(|law| self.spring_between([law; 2]) > 0.0)
     }
 
+    /// k l at a boundary group, Pa.
+    #[inline]
+    pub(crate) fn spring_at(&self, group: usize, law: usize) -> f64 {
+        self.stiffness.at_edges.get(law * self.stiffness.how.len() + group).copied().unwrap_or(0.0)
+    }
+
+    /// beta M = k l of a face between two laws, Pa.
+    #[inline]
+    pub(crate) fn spring_between(&self, [law, other]: [usize; 2]) -> f64 {
+        self.stiffness.between.get(law * self.stiffness.laws + other).copied().unwrap_or(0.0)
+    }
+
     /// k l at a boundary whose faces give back what they creep, Pa. The shear of a free side creeps at 1/(rho0 c_s): k is so much less that
     /// its relaxation is no faster than inside, at any c_p/c_s.
-    pub(crate) fn spring_at(&self, group: usize, law: usize) -> f64 {
-        let inside = self.spring_between([law; 2]);
-        match self.boundaries[group].gives_back() {
+    fn find_at_edge(&self, how: GivesBack, law: usize) -> f64 {
+        let inside = self.find_between([law; 2]);
+        match how {
             GivesBack::Nothing => 0.0,
             GivesBack::Along => inside,
             GivesBack::All if inside > 0.0 => inside * (self.laws[law].shear_modulus() / self.moduli[law]).sqrt(),
@@ -72,10 +121,10 @@ impl Scheme {
         }
     }
 
-    /// beta M = k l of a face between two laws, Pa; 0 where one of them has memory, see [`creep::spring`].
-    pub(crate) fn spring_between(&self, laws: [usize; 2]) -> f64 {
+    /// beta M of a face between two laws, Pa; 0 where one of them has memory, see [`creep::spring`].
+    fn find_between(&self, laws: [usize; 2]) -> f64 {
         let flows = laws.iter().any(|law| self.laws[*law].has_memory());
-        if flows || !self.gives_back { 0.0 } else { creep::spring(self.operators.degree) * self.modulus_between(laws) }
+        if flows { 0.0 } else { creep::spring(self.operators.degree) * self.modulus_between(laws) }
     }
 
     /// M of a face between two laws, Pa.
@@ -161,7 +210,7 @@ impl Scheme {
             }
             for (lane, neighbour) in neighbours.iter().enumerate() {
                 let modulus = match neighbour {
-                    Neighbour::Boundary(group) => match self.boundaries[*group].gives_back() {
+                    Neighbour::Boundary(group) => match self.gives_back(*group) {
                         GivesBack::Along => 0.5 * own,
                         _ => self.spring_at(*group, law),
                     },

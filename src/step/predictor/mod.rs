@@ -23,7 +23,7 @@ use transfer::{ToNodes, ToPoints};
 pub struct Arrays {
     /// U_p^n.
     pub start: Vec<F8>,
-    /// U_p^n and what sources and springs add until a time node, [p][6]; empty without any.
+    /// p of U_p^n and what sources and springs add until a time node, [p][6], the rows of F being left; empty without any.
     shifted: Vec<F8>,
     /// r_k,p of the sweep before and of this one, [k][p][6].
     pub rates: [Vec<F8>; 2],
@@ -31,9 +31,9 @@ pub struct Arrays {
     q: Vec<F8>,
     /// Sources b at points and time nodes, [k][p][2]; empty without sources.
     pub source: Vec<F8>,
-    /// dp/dt by the springs of the faces ([`super::held_rate`]) at the nodes, [6][a], the rows of F being 0; empty without springs.
+    /// dp/dt by the springs of the faces ([`super::held_rate`]) at the nodes, [2][a]; empty without springs.
     pub held_at_nodes: Vec<F8>,
-    /// The same at the points, [p][6].
+    /// The same at the points, [p][2].
     pub held: Vec<F8>,
     /// Time averages of F and v, [p][6].
     pub mean: Vec<F8>,
@@ -68,8 +68,8 @@ impl Arrays {
             rates: [zeros(UNKNOWNS * sweeps.widest()), zeros(UNKNOWNS * sweeps.widest())],
             q: zeros(UNKNOWNS),
             source: zeros_if(added.sources, AXES * time.len()),
-            held_at_nodes: if added.springs { vec![F8::ZERO; UNKNOWNS * m * m] } else { vec![] },
-            held: zeros_if(added.springs, UNKNOWNS),
+            held_at_nodes: if added.springs { vec![F8::ZERO; AXES * m * m] } else { vec![] },
+            held: zeros_if(added.springs, AXES),
             mean: zeros(UNKNOWNS),
             mean_stress: zeros(DEFORMATION),
             between: vec![F8::ZERO; transfer::factors(m, points, UNKNOWNS)],
@@ -115,13 +115,13 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         // One metric for all points turns P to the axes of the cell before it is differentiated: fewer products.
         let constant = (self.metric.len() == DEFORMATION).then(|| load_array::<L, DEFORMATION>(self.metric));
         let mut row = Row::default();
-        self.begin_shift(arrays);
         for sweep in &self.sweeps.inner {
             self.renew(sweep, arrays);
             for s in 0..sweep.to {
                 self.shift::<L>(arrays, &sweep.sources[s * times..(s + 1) * times]);
                 let Arrays { start, shifted, rates: [before, _], q, .. } = arrays;
-                let base = if shifted.is_empty() { &start[..UNKNOWNS * np] } else { &shifted[..UNKNOWNS * np] };
+                let (start, momenta) = (&start[..UNKNOWNS * np], if shifted.is_empty() { &*start } else { &*shifted });
+                let base = [start, &momenta[..UNKNOWNS * np]];
                 self.row(&sweep.rates[s * sweep.from..(s + 1) * sweep.from], &mut row);
                 let (rows, dt) = (&row[..sweep.from], sweep.tau[s] * self.dt);
                 match constant {
@@ -180,16 +180,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
     }
 
-    /// U^n, to which sources and springs add, where there are any. They add to p alone.
-    #[inline(always)]
-    fn begin_shift(&self, arrays: &mut Arrays) {
-        if !arrays.shifted.is_empty() {
-            let count = UNKNOWNS * self.matrices.points();
-            arrays.shifted[..count].copy_from_slice(&arrays.start[..count]);
-        }
-    }
-
-    /// p^n + dt sum_k B[k] (rho0 b_k + dp/dt of the springs), where there are sources or springs.
+    /// p^n + dt sum_k B[k] (rho0 b_k + dp/dt of the springs), where there are sources or springs. They add to p alone: rows of F are left.
     #[inline(always)]
     fn shift<L: Lanes>(&self, arrays: &mut Arrays, row: &[f64]) {
         if arrays.shifted.is_empty() {
@@ -206,7 +197,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
             for k in DEFORMATION..UNKNOWNS {
                 let mut u = L::load(&start[p][k]);
                 if !arrays.held.is_empty() {
-                    u = factor.mul_add(L::load(&arrays.held[UNKNOWNS * p + k]), u);
+                    u = factor.mul_add(L::load(&arrays.held[AXES * p + k - DEFORMATION]), u);
                 }
                 u.store(&mut shifted[p][k]);
             }
@@ -226,21 +217,30 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
     }
 
-    /// u = U^n + dt sum_k W[k] r_k at one time node, `dt` after t_n, and Q of it. F and the law first, then v: together they would need
-    /// more registers than there are.
+    /// u = U^n + dt sum_k W[k] r_k at one time node, `dt` after t_n, and Q of it, from `base`: F^n of the first, p of the second. F and the
+    /// law first, then v: together they would need more registers than there are.
     #[inline(always)]
-    fn sample<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], dt: f64, turn: impl Turn<L>, q: &mut [F8]) {
+    fn sample<L: Lanes>(&self, base: [&[F8]; 2], before: &[F8], row: &[f64], dt: f64, turn: impl Turn<L>, q: &mut [F8]) {
         // Four points of the first sweep, as at degree 1, by themselves: all loops are unrolled.
-        match (base.len(), row) {
-            (24, []) => self.sample_of::<L>(&base[..24], before, &[], dt, turn, q),
+        match (base[0].len(), row) {
+            (24, []) => self.sample_of::<L>([&base[0][..24], &base[1][..24]], before, &[], dt, turn, q),
             _ => self.sample_of::<L>(base, before, row, dt, turn, q),
         }
     }
 
     /// [`Predictor::sample`] for lengths that may be constants.
     #[inline(always)]
-    fn sample_of<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], dt: f64, turn: impl Turn<L>, q: &mut [F8]) {
-        let (base, before) = (base.as_chunks::<UNKNOWNS>().0, before.as_chunks::<UNKNOWNS>().0);
+    fn sample_of<L: Lanes>(
+        &self,
+        base: [&[F8]; 2],
+        before: &[F8],
+        row: &[f64],
+        dt: f64,
+        turn: impl Turn<L>,
+        q: &mut [F8],
+    ) {
+        let (base, before) = ([base[0].as_chunks::<UNKNOWNS>().0, base[1].as_chunks::<UNKNOWNS>().0], before.as_chunks::<UNKNOWNS>().0);
+        let [base, momenta] = [base[0], &base[1][..base[0].len()]];
         let q = &mut q.as_chunks_mut::<UNKNOWNS>().0[..base.len()];
         let twins = if count::<M>() == 0 { base.len() / 2 * 2 } else { 0 };
         let (pairs, rest) = q.split_at_mut(twins);
@@ -262,7 +262,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         let q = &mut q[..base.len()];
         let inverse_density = L::splat(1.0 / self.law.density());
         for (p, q) in q.iter_mut().enumerate() {
-            let momentum = state::<L, DEFORMATION, AXES>(base, before, row, p);
+            let momentum = state::<L, DEFORMATION, AXES>(momenta, before, row, p);
             (momentum[0] * inverse_density).store(&mut q[2]);
             (momentum[1] * inverse_density).store(&mut q[3]);
         }
@@ -285,7 +285,9 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
             self.row(&last.rates[s * from..(s + 1) * from], row);
         }
         for (p, mean) in mean.as_chunks_mut::<UNKNOWNS>().0[..np].iter_mut().enumerate() {
-            let u = state::<L, 0, UNKNOWNS>(base, before, &mean_row[..from], p);
+            let mut u = load_array::<L, UNKNOWNS>(&start[p]);
+            (u[4], u[5]) = (L::load(&base[p][4]), L::load(&base[p][5]));
+            let u = grown::<L, 0, UNKNOWNS>(u, before, &mean_row[..from], (p, np));
             store_array([u[0], u[1], u[2], u[3], u[4] * inverse_density, u[5] * inverse_density], mean);
         }
         // Two points at a time as in `sample`. Sources do not act on F: from U^n itself.
@@ -345,9 +347,19 @@ fn state<L: Lanes, const FIRST: usize, const K: usize>(
     row: &[f64],
     p: usize,
 ) -> [L; K] {
-    let mut u = load_array::<L, K>(&base[p][FIRST..]);
+    grown::<L, FIRST, K>(load_array(&base[p][FIRST..]), before, row, (p, base.len()))
+}
+
+/// u + sum_k row[k] r_k at a point of `count`, fields as in [`state`].
+#[inline(always)]
+fn grown<L: Lanes, const FIRST: usize, const K: usize>(
+    mut u: [L; K],
+    before: &[[F8; UNKNOWNS]],
+    row: &[f64],
+    (p, count): (usize, usize),
+) -> [L; K] {
     for (k, factor) in row.iter().enumerate() {
-        let (factor, rate) = (L::splat(*factor), &before[k * base.len() + p]);
+        let (factor, rate) = (L::splat(*factor), &before[k * count + p]);
         for i in 0..K {
             u[i] = factor.mul_add(L::load(&rate[FIRST + i]), u[i]);
         }
