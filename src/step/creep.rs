@@ -5,9 +5,10 @@
 //! All stages of a step see a of its start; the step is some hundredth of the relaxation time, and what the step then loses at a face
 //! is Y^-1 |da/dt|^2 (1 - k Y dt/2), above 0.
 
+use super::across::Other;
 use super::block::Block;
 use crate::boundary::{FacePoint, GivesBack};
-use crate::lane::{F8, Lane, Lanes, load_array, store_array};
+use crate::lane::{F8, Lanes, load_array, store_array};
 use crate::riemann::{Medium, Riemann, Trace, creep, summed_impedance, tangent};
 use crate::state::UNKNOWNS;
 use crate::tensor::{AXES, DEFORMATION, dot, times};
@@ -64,20 +65,18 @@ impl<'a> Springs<'a> {
         Springs { pull: self.pull, before: self.before, now: self.now, dt: self.dt, stored: 0.0 }
     }
 
-    /// A point between two cells of one law with the `admittance` Y: moves a, and takes the pull of the spring out of what is `lifted`.
-    /// `forgotten` is (1 + epsilon)/l.
+    /// A point of a face between two cells of one law, with the `admittance` Y: moves a, and takes the pull of the spring out of what is `lifted`.
     #[inline(always)]
     pub fn act<L: Lanes>(
         &mut self,
         at: usize,
+        face: &SpringFace<L>,
         [minus, plus]: [&Trace<L>; 2],
         admittance: L,
-        (normal, forgotten): ([L; 2], L),
         lifted: &mut [L; UNKNOWNS],
     ) {
-        let rotation = rotation_of(minus, plus);
         // What is lifted has l v*, and v* has -Y k R a with k = modulus/l.
-        let pull = self.pull.of::<L>(at, rotation);
+        let (pull, normal) = (self.pull.of::<L>(at, face.modulus), face.normal);
         for i in 0..AXES {
             let back = admittance * pull[i];
             for k in 0..AXES {
@@ -87,9 +86,9 @@ impl<'a> Springs<'a> {
         // No closures: the compiler need not inline them, and a call stands without the features of the processor.
         let mut moved = [L::zero(); AXES];
         for i in 0..AXES {
-            moved[i] = admittance * (plus.t[i] - minus.t[i] - pull[i] * forgotten);
+            moved[i] = admittance * (plus.t[i] - minus.t[i] - pull[i] * face.forgotten);
         }
-        let rate = creep::turned_back(rotation, moved);
+        let rate = creep::turned_back(face.rotation, moved);
         for (i, rate) in rate.iter().enumerate() {
             let before = L::load(&self.before[AXES * at + i]);
             L::splat(self.dt).mul_add(*rate, before).store(&mut self.now[AXES * at + i]);
@@ -115,12 +114,23 @@ impl<'a> Springs<'a> {
 }
 
 impl Pull<'_> {
-    /// l k R a.
+    /// A face between cells of one law, from the numbers of its points on both sides, with the normal and the length of `own`.
     #[inline(always)]
-    fn of<L: Lanes>(&self, at: usize, rotation: [L; 2]) -> [L; 2] {
-        let a = load_array::<L, AXES>(&self.start[AXES * at..][..AXES]);
-        let ([one, two], modulus) = (creep::turned(rotation, a), L::splat(self.modulus));
-        [modulus * one, modulus * two]
+    pub fn face<L: Lanes, O: Other, const W: usize>(
+        &self,
+        own: &[[F8; W]],
+        other: &O,
+        (normal, length): ([L; 2], L),
+    ) -> SpringFace<L> {
+        let (rotation, modulus) = (ends::<L, O, W>(own, other), L::splat(self.modulus));
+        let forgotten = L::splat(1.0 + creep::FORGETS) / length;
+        SpringFace { rotation, modulus: [modulus * rotation[0], modulus * rotation[1]], forgotten, normal }
+    }
+
+    /// l k R a, from l k R.
+    #[inline(always)]
+    fn of<L: Lanes>(&self, at: usize, modulus: [L; 2]) -> [L; 2] {
+        creep::turned(modulus, load_array::<L, AXES>(&self.start[AXES * at..][..AXES]))
     }
 
     /// k R a . (R da/dt) at a point between two cells of one law, the power that its spring stores, W/m^2; adds what k R a does to Flux*.
@@ -128,16 +138,16 @@ impl Pull<'_> {
     pub fn meter<L: Lanes, R: Riemann>(
         &self,
         at: usize,
+        face: &SpringFace<L>,
         riemann: &R,
-        sides: [&Trace<L>; 2],
-        (normal, length): ([L; 2], L),
+        [minus, plus]: [&Trace<L>; 2],
         medium: &Medium<L>,
         flux: &mut [F8; UNKNOWNS],
     ) -> L {
-        let ([minus, plus], inverse) = (sides, L::splat(1.0) / length);
         let admittance = riemann.admittance(minus, plus, medium);
-        let [one, two] = self.of::<L>(at, rotation_of(minus, plus));
-        let (pull, grows) = ([one * inverse, two * inverse], L::splat(1.0 + creep::FORGETS));
+        let ([one, two], grows) = (self.of::<L>(at, face.modulus), L::splat(1.0 + creep::FORGETS));
+        let (inverse, normal) = (face.forgotten * L::splat(1.0 / (1.0 + creep::FORGETS)), face.normal);
+        let pull = [one * inverse, two * inverse];
         let (mut sum, mut stored) = (load_array::<L, UNKNOWNS>(flux), L::zero());
         for i in 0..AXES {
             let back = admittance * pull[i];
@@ -245,7 +255,7 @@ impl Block<'_> {
         if stiffness == 0.0 {
             return;
         }
-        let rotation = rotation_of(minus, plus);
+        let rotation = creep::rotation(std::array::from_fn(|k| minus.f[k] + plus.f[k]));
         let pull = springs.pull().of_lane(at, lane, rotation, stiffness);
         let density = [self.material(), material].map(|law| scheme.laws[law].density());
         let moved = |t: [f64; 2]| summed_impedance([minus, plus], normal, density).solve(t);
@@ -256,9 +266,26 @@ impl Block<'_> {
     }
 }
 
-/// R of the mean F of both sides.
+/// What springs know of a face between cells of one law.
+pub(super) struct SpringFace<L> {
+    /// R.
+    rotation: [L; 2],
+    /// l k R, Pa.
+    modulus: [L; 2],
+    /// (1 + epsilon)/l, 1/m.
+    forgotten: L,
+    normal: [L; 2],
+}
+
+/// R of the mean F of both sides at the first and the last point of a face: one square root a face. The sides must agree to the bit, whichever
+/// of the two points is the first.
 #[inline(always)]
-fn rotation_of<L: Lane>(minus: &Trace<L>, plus: &Trace<L>) -> [L; 2] {
-    let (m, p) = (minus.f, plus.f);
-    creep::rotation([m[0] + p[0], m[1] + p[1], m[2] + p[2], m[3] + p[3]])
+fn ends<L: Lanes, O: Other, const W: usize>(own: &[[F8; W]], other: &O) -> [L; 2] {
+    let last = own.len() - 1;
+    let (first_there, last_there) = (other.load::<L, W>(0), other.load::<L, W>(last));
+    let mut f = [L::zero(); DEFORMATION];
+    for (k, f) in f.iter_mut().enumerate() {
+        *f = (L::load(&own[0][k]) + first_there[k]) + (L::load(&own[last][k]) + last_there[k]);
+    }
+    creep::rotation(f)
 }

@@ -54,7 +54,14 @@ impl FaceBalance<'_, '_> {
             medium.turn = turn::<L, _, W>(sides.own.as_chunks::<W>().0, sides.other, block.turning());
         }
         let weights = &scheme.operators.line.basis.weights[..scheme.operators.line.m];
-        for (point, (own, weight)) in sides.own.as_chunks::<W>().0.iter().zip(weights).enumerate() {
+        let points = sides.own.as_chunks::<W>().0;
+        let springs = match pull {
+            Some(pull) => {
+                Some((pull, pull.face::<L, _, W>(points, sides.other, (normal, metric.length(face)))))
+            }
+            None => None,
+        };
+        for (point, (own, weight)) in points.iter().zip(weights).enumerate() {
             let beyond = turned::<L, R, W>(sides.other.load::<L, W>(point));
             let minus = trace_of::<L, R, W>(&load_array::<L, W>(own));
             let plus = trace_of::<L, R, W>(&beyond);
@@ -62,10 +69,9 @@ impl FaceBalance<'_, '_> {
             store_array(riemann.flux(&minus, &plus, normal, &medium), &mut flux);
             store_array(beyond, &mut there);
             let mut stored = F8::ZERO;
-            if let Some(pull) = pull {
+            if let Some((pull, of_face)) = &springs {
                 let at = face * scheme.operators.line.m + point;
-                pull.meter(at, riemann, [&minus, &plus], (normal, metric.length(face)), &medium, &mut flux)
-                    .store(&mut stored);
+                pull.meter(at, of_face, riemann, [&minus, &plus], &medium, &mut flux).store(&mut stored);
             }
             (metric.length(face) * L::splat(*weight * factor)).store(&mut scale);
             for (lane, neighbour) in neighbours.iter().enumerate() {

@@ -17,7 +17,7 @@ use crate::built;
 use crate::lane::{F8, LANES, Lanes, load_array, store_array};
 use crate::mesh::{FACES, map};
 use crate::operators::{Metric, Neighbour, Side};
-use crate::riemann::{Looks, Medium, Riemann, Trace, creep, hold, interface};
+use crate::riemann::{Looks, Medium, Riemann, Trace, hold, interface};
 use crate::state::UNKNOWNS;
 use crate::tensor::DEFORMATION;
 
@@ -86,7 +86,11 @@ impl Faces<'_> {
         let metric = self.metric.load::<L>();
         let (normal, length) = (metric.normal(face), metric.length(face));
         let lift = &mut self.lift.as_chunks_mut::<UNKNOWNS>().0[m * face..m * (face + 1)];
-        let forgotten = L::splat(1.0 + creep::FORGETS) / length;
+        // No closures in kernels, see `lane`.
+        let mut springs = match (SPRINGS, &mut self.springs) {
+            (true, Some(springs)) => Some((springs.pull.face::<L, O, W>(own, &other, (normal, length)), springs)),
+            _ => None,
+        };
         for point in 0..m {
             let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[point]));
             let there = turned::<L, R, W>(other.load::<L, W>(point));
@@ -96,8 +100,8 @@ impl Faces<'_> {
                 store_array(held, &mut self.held.as_chunks_mut::<2>().0[m * face + point]);
             }
             let (mut lifted, admittance) = riemann.lifted_and_admittance(&minus, &plus, normal, &medium, length);
-            if let (true, Some(springs)) = (SPRINGS, &mut self.springs) {
-                springs.act(m * face + point, [&minus, &plus], admittance, (normal, forgotten), &mut lifted);
+            if let Some((of_face, springs)) = &mut springs {
+                springs.act(m * face + point, of_face, [&minus, &plus], admittance, &mut lifted);
             }
             store_array(lifted, &mut lift[point]);
         }

@@ -13,6 +13,7 @@
 
 use super::block::Block;
 use super::lift::at_node;
+use super::springs::Held;
 use super::volume::{cofactors, row};
 use crate::boundary::GivesBack;
 use crate::lane::{F8, Lanes, Work, load_array, store_array};
@@ -100,40 +101,10 @@ impl Block<'_> {
     pub(super) fn held_rate(&self, state: &State, rate: &mut [F8]) {
         let (line, metric, u) = (&self.scheme.operators.line, self.metric(), self.unknowns(state));
         let creep = self.scheme.creep_of(state, self.number);
-        let own = self.spring_between(self.material());
-        let moduli = &[0, 1, 2, 3].map(|face| self.held_modulus(face, own));
-        let walls = &self.has_walls().then(|| self.pull_along_walls(creep));
+        let Held { moduli, has_walls } = self.scheme.held_of(self.number);
+        let walls = has_walls.then(|| self.pull_along_walls(creep));
         let walls = walls.as_ref();
         with_nodes!(line.m, M => self.scheme.kernel.run(HeldRate::<'_, M> { line, metric, u, creep, moduli, walls, rate }));
-    }
-
-    /// What a cell takes of l k of a face, Pa: half of `own` between two cells of one law, all of it at a side that gives back all; walls are
-    /// in [`Block::pull_along_walls`].
-    fn held_modulus(&self, face: usize, own: f64) -> F8 {
-        let (scheme, law, mut out) = (self.scheme, self.material(), F8::splat(0.5 * own));
-        let blocks = &scheme.operators.blocks;
-        if !blocks.plan[self.number][face].has_boundary_or_interface {
-            return out;
-        }
-        for (out, neighbour) in out.0.iter_mut().zip(&blocks.neighbours[self.number][face]) {
-            match neighbour {
-                Neighbour::Cell(_) | Neighbour::Padding => {}
-                Neighbour::Interface(_, there) => *out = 0.5 * self.spring_between(*there),
-                Neighbour::Boundary(group) if scheme.gives_back(*group) == GivesBack::All => {
-                    *out = scheme.spring_at(*group, law);
-                }
-                Neighbour::Boundary(_) => *out = 0.0,
-            }
-        }
-        out
-    }
-
-    /// Whether a face of the block gives back along itself alone.
-    fn has_walls(&self) -> bool {
-        let (scheme, blocks) = (self.scheme, &self.scheme.operators.blocks);
-        let is_wall = |neighbour: &Neighbour| matches!(neighbour, Neighbour::Boundary(group) if scheme.gives_back(*group) == GivesBack::Along);
-        let sides = blocks.plan[self.number].iter().zip(&blocks.neighbours[self.number]);
-        sides.filter(|(plan, _)| plan.has_boundary_or_interface).any(|(_, lanes)| lanes.iter().any(is_wall))
     }
 
     /// The faces that give back along themselves alone, with half of a spring.

@@ -6,10 +6,11 @@ use crate::boundary::GivesBack;
 use crate::error::{Error, Result};
 use crate::lane::{F8, LANES};
 use crate::mesh::FACES;
-use crate::operators::Neighbour;
+use crate::operators::{Blocks, Neighbour};
 use crate::riemann::{Looks, creep};
 use crate::state::State;
 use crate::tensor::AXES;
+use std::collections::HashMap;
 
 /// rho0 c_p^2 at F = 1 by law, Pa; empty where the flux has no springs.
 pub(super) fn moduli(laws: &[Law], flux: &Flux) -> Vec<f64> {
@@ -30,6 +31,18 @@ pub(super) struct Stiffness {
     how: Vec<GivesBack>,
     /// Number of laws.
     laws: usize,
+    /// The entry of `held` of each block: most blocks of a body share one, which stays in the first cache.
+    entry: Vec<u32>,
+    held: Vec<Held>,
+}
+
+/// What the predictor asks of the springs of a block.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Held {
+    /// What a cell takes of l k of a face, Pa: half of it between two cells, all of it at a side that gives back all.
+    pub moduli: [F8; FACES],
+    /// Whether a face gives back along itself alone, with half of a spring: these are not in `moduli`.
+    pub has_walls: bool,
 }
 
 impl Stiffness {
@@ -39,7 +52,42 @@ impl Stiffness {
         let how: Vec<_> = scheme.boundaries.iter().map(|condition| condition.gives_back()).collect();
         let between = (0..laws * laws).map(|pair| scheme.find_between([pair / laws, pair % laws])).collect();
         let at_edge = |law| how.iter().map(move |how| scheme.find_at_edge(*how, law));
-        Self { between, at_edges: (0..laws).flat_map(at_edge).collect(), how, laws }
+        let at_edges = (0..laws).flat_map(at_edge).collect();
+        let mut new = Self { between, at_edges, how, laws, ..Self::default() };
+        let mut entries = HashMap::new();
+        for block in 0..scheme.operators.blocks.len() {
+            let held = new.held(&scheme.operators.blocks, block);
+            let bits = held.moduli.map(|modulus| modulus.0.map(f64::to_bits));
+            let entry = *entries.entry((bits, held.has_walls)).or_insert_with(|| {
+                new.held.push(held);
+                new.held.len() - 1
+            });
+            new.entry.push(entry as u32);
+        }
+        new
+    }
+
+    fn between(&self, [law, other]: [usize; 2]) -> f64 {
+        self.between.get(law * self.laws + other).copied().unwrap_or(0.0)
+    }
+
+    fn at_edge(&self, group: usize, law: usize) -> f64 {
+        self.at_edges.get(law * self.how.len() + group).copied().unwrap_or(0.0)
+    }
+
+    fn held(&self, blocks: &Blocks, block: usize) -> Held {
+        let (law, mut has_walls) = (blocks.material[block], false);
+        let mut modulus = |neighbour: &Neighbour| match neighbour {
+            Neighbour::Cell(_) => 0.5 * self.between([law; 2]),
+            Neighbour::Interface(_, there) => 0.5 * self.between([law, *there]),
+            Neighbour::Boundary(group) => {
+                has_walls |= self.how[*group] == GivesBack::Along;
+                if self.how[*group] == GivesBack::All { self.at_edge(*group, law) } else { 0.0 }
+            }
+            Neighbour::Padding => 0.0,
+        };
+        let moduli = std::array::from_fn(|face| F8(blocks.neighbours[block][face].each_ref().map(&mut modulus)));
+        Held { moduli, has_walls }
     }
 }
 
@@ -100,13 +148,19 @@ impl Scheme {
     /// k l at a boundary group, Pa.
     #[inline]
     pub(crate) fn spring_at(&self, group: usize, law: usize) -> f64 {
-        self.stiffness.at_edges.get(law * self.stiffness.how.len() + group).copied().unwrap_or(0.0)
+        self.stiffness.at_edge(group, law)
     }
 
     /// beta M = k l of a face between two laws, Pa.
     #[inline]
-    pub(crate) fn spring_between(&self, [law, other]: [usize; 2]) -> f64 {
-        self.stiffness.between.get(law * self.stiffness.laws + other).copied().unwrap_or(0.0)
+    pub(crate) fn spring_between(&self, laws: [usize; 2]) -> f64 {
+        self.stiffness.between(laws)
+    }
+
+    /// What the predictor asks of the springs of a block, where the scheme has springs.
+    #[inline]
+    pub(super) fn held_of(&self, block: usize) -> &Held {
+        &self.stiffness.held[self.stiffness.entry[block] as usize]
     }
 
     /// k l at a boundary whose faces give back what they creep, Pa. The shear of a free side creeps at 1/(rho0 c_s): k is so much less that
