@@ -18,7 +18,7 @@ pub struct Metric<T> {
     /// d2X/dxi1 dxi2; 0 for parallelograms.
     twist: [T; 2],
     /// 1 / lengths of the faces, 1/m.
-    inverse_length: [T; FACES],
+    pub inverse_length: [T; FACES],
     /// h_e.
     pub h: T,
 }

@@ -19,8 +19,8 @@
 //! ```
 //!
 //! which is zero without jumps and not negative for a dissipative flux (acoustic: half [t] Z^-1 [t] + half [v] Z [v]),
-//! and at a boundary the work v*.t* minus (v* - v).(t* - t) + a.s. Springs of faces ([`crate::riemann::creep`]) store k R a . (R da/dt) of
-//! that, which D is without: what they forget is lost. A Runge-Kutta stage counts with dt b_i; ADER has
+//! and at a boundary the work v*.t* minus (v* - v).(t* - t) + a.s. Springs of faces ([`crate::riemann::creep`]) store
+//! k R (a + dt/2 da/dt) . (R da/dt) of that in a step, which D is without: what they forget is lost. A Runge-Kutta stage counts with dt b_i; ADER has
 //! one flux and one source a step, from averages over its time nodes.
 //!
 //! In the limit of small steps D is what is lost, to rounding. It is not what ADER loses in a step of usual size: its
@@ -116,7 +116,7 @@ pub(super) struct FacePower<'a> {
     pub plus: &'a [F8],
     /// Flux*.
     pub flux: &'a [F8; UNKNOWNS],
-    /// k R a . (R da/dt), what the spring of the face stores, W/m^2.
+    /// What the spring of the face stores in the step, W/m^2.
     pub stored: &'a F8,
 }
 

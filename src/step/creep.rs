@@ -27,6 +27,8 @@ pub(super) struct Pull<'a> {
     start: &'a [F8],
     /// k l, Pa.
     modulus: f64,
+    /// The step, s.
+    step: f64,
 }
 
 /// The springs of the faces of a block in a stage.
@@ -57,7 +59,7 @@ impl<'a> Springs<'a> {
             memory.copy_from_slice(now);
             memory
         };
-        Some(Self { pull: Pull { start, modulus }, before, now, dt: block.factor(), stored: 0.0 })
+        Some(Self { pull: Pull { start, modulus, step: block.stage.dt }, before, now, dt: block.factor(), stored: 0.0 })
     }
 
     /// The same for a shorter time.
@@ -77,6 +79,7 @@ impl<'a> Springs<'a> {
     ) {
         // What is lifted has l v*, and v* has -Y k R a with k = modulus/l.
         let (pull, normal) = (self.pull.of::<L>(at, face.modulus), face.normal);
+        let forgotten = L::splat(1.0 + creep::FORGETS) * face.inverse;
         for i in 0..AXES {
             let back = admittance * pull[i];
             for k in 0..AXES {
@@ -86,7 +89,7 @@ impl<'a> Springs<'a> {
         // No closures: the compiler need not inline them, and a call stands without the features of the processor.
         let mut moved = [L::zero(); AXES];
         for i in 0..AXES {
-            moved[i] = admittance * (plus.t[i] - minus.t[i] - pull[i] * face.forgotten);
+            moved[i] = admittance * (plus.t[i] - minus.t[i] - pull[i] * forgotten);
         }
         let rate = creep::turned_back(face.rotation, moved);
         for (i, rate) in rate.iter().enumerate() {
@@ -104,27 +107,26 @@ impl<'a> Springs<'a> {
     }
 
     /// A point of a lane whose creep grows by R^T `velocity`, m/s.
-    fn follow(&mut self, at: usize, lane: usize, rotation: [f64; 2], velocity: [f64; 2]) {
-        let rate = creep::turned_back(rotation, velocity);
+    fn follow(&mut self, spring: &Spring, velocity: [f64; 2]) {
+        let rate = creep::turned_back(spring.rotation, velocity);
         for (i, rate) in rate.iter().enumerate() {
-            let k = AXES * at + i;
+            let (k, lane) = (AXES * spring.at + i, spring.lane);
             self.now[k].0[lane] = self.dt.mul_add(*rate, self.before[k].0[lane]);
         }
     }
 }
 
 impl Pull<'_> {
-    /// A face between cells of one law, from the numbers of its points on both sides, with the normal and the length of `own`.
+    /// A face between cells of one law, from the numbers of its points on both sides, with the normal of `own` and 1/l.
     #[inline(always)]
     pub fn face<L: Lanes, O: Other, const W: usize>(
         &self,
         own: &[[F8; W]],
         other: &O,
-        (normal, length): ([L; 2], L),
+        (normal, inverse): ([L; 2], L),
     ) -> SpringFace<L> {
-        let (rotation, modulus) = (ends::<L, O, W>(own, other), L::splat(self.modulus));
-        let forgotten = L::splat(1.0 + creep::FORGETS) / length;
-        SpringFace { rotation, modulus: [modulus * rotation[0], modulus * rotation[1]], forgotten, normal }
+        let (rotation, modulus) = (rotation_of::<L, O, W>(own, other), L::splat(self.modulus));
+        SpringFace { rotation, modulus: [modulus * rotation[0], modulus * rotation[1]], inverse, normal }
     }
 
     /// l k R a, from l k R.
@@ -133,7 +135,8 @@ impl Pull<'_> {
         creep::turned(modulus, load_array::<L, AXES>(&self.start[AXES * at..][..AXES]))
     }
 
-    /// k R a . (R da/dt) at a point between two cells of one law, the power that its spring stores, W/m^2; adds what k R a does to Flux*.
+    /// k R (a + dt/2 da/dt) . (R da/dt) at a point between two cells of one law, the power that its spring stores in the step, W/m^2; adds what
+    /// k R a does to Flux*.
     #[inline(always)]
     pub fn meter<L: Lanes, R: Riemann>(
         &self,
@@ -145,25 +148,48 @@ impl Pull<'_> {
         flux: &mut [F8; UNKNOWNS],
     ) -> L {
         let admittance = riemann.admittance(minus, plus, medium);
-        let ([one, two], grows) = (self.of::<L>(at, face.modulus), L::splat(1.0 + creep::FORGETS));
-        let (inverse, normal) = (face.forgotten * L::splat(1.0 / (1.0 + creep::FORGETS)), face.normal);
-        let pull = [one * inverse, two * inverse];
+        let ([one, two], grows, normal) = (self.of::<L>(at, face.modulus), L::splat(1.0 + creep::FORGETS), face.normal);
+        let pull = [one * face.inverse, two * face.inverse];
+        let half = L::splat(0.5 * self.modulus * self.step) * face.inverse;
         let (mut sum, mut stored) = (load_array::<L, UNKNOWNS>(flux), L::zero());
         for i in 0..AXES {
             let back = admittance * pull[i];
             for k in 0..AXES {
                 sum[AXES * i + k] = back.mul_add(normal[k], sum[AXES * i + k]);
             }
-            stored = back.mul_add(plus.t[i] - minus.t[i] - grows * pull[i], stored);
+            let velocity = admittance * (plus.t[i] - minus.t[i] - grows * pull[i]);
+            stored = velocity.mul_add(half.mul_add(velocity, pull[i]), stored);
         }
         store_array(sum, flux);
         stored
     }
 
-    /// k R a in a lane, Pa.
-    fn of_lane(&self, at: usize, lane: usize, rotation: [f64; 2], stiffness: f64) -> [f64; 2] {
+    /// A point in a lane, with its stiffness k, Pa/m.
+    fn of_lane(&self, at: usize, lane: usize, rotation: [f64; 2], stiffness: f64) -> Spring {
         let a = [0, 1].map(|k| self.start[AXES * at + k].0[lane]);
-        creep::turned(rotation, a).map(|a| stiffness * a)
+        let pull = creep::turned(rotation, a).map(|a| stiffness * a);
+        Spring { at, lane, rotation, stiffness, pull, step: self.step }
+    }
+}
+
+/// The spring of a point in a lane.
+struct Spring {
+    at: usize,
+    lane: usize,
+    /// R.
+    rotation: [f64; 2],
+    /// k, Pa/m.
+    stiffness: f64,
+    /// k R a, Pa.
+    pull: [f64; 2],
+    /// The step, s.
+    step: f64,
+}
+
+impl Spring {
+    /// k R (a + dt/2 da/dt) . (R da/dt), W/m^2, with R da/dt = `velocity`: what it stores in the step.
+    fn stores(&self, velocity: [f64; 2]) -> f64 {
+        dot(self.pull, velocity) + 0.5 * self.stiffness * self.step * dot(velocity, velocity)
     }
 }
 
@@ -183,14 +209,14 @@ impl Pulling<'_, '_> {
         }
     }
 
-    /// The face moves by R da/dt = `velocity`, m/s, against k R a = `pull`, Pa.
-    fn follow(self, [at, lane]: [usize; 2], rotation: [f64; 2], velocity: [f64; 2], pull: [f64; 2]) {
+    /// The face moves by R da/dt = `velocity`, m/s.
+    fn follow(self, spring: &Spring, velocity: [f64; 2]) {
         match self {
             Pulling::Moving(springs) => {
-                springs.follow(at, lane, rotation, velocity);
-                springs.stored = dot(pull, velocity);
+                springs.follow(spring, velocity);
+                springs.stored = spring.stores(velocity);
             }
-            Pulling::Still(_, stored) => *stored = dot(pull, velocity),
+            Pulling::Still(_, stored) => *stored = spring.stores(velocity),
         }
     }
 }
@@ -221,22 +247,22 @@ impl Block<'_> {
         if how == GivesBack::Along {
             // The mean of F and its image turns nowhere, and the pull is shared with the image. What the condition adds to the rows of F for the
             // jump of F to the image is no creep.
-            let pull = springs.pull().of_lane(at, lane, [1.0, 0.0], 0.5 * stiffness);
+            let spring = springs.pull().of_lane(at, lane, [1.0, 0.0], 0.5 * stiffness);
             let (mut flux, along) = (flux(inside), tangent(normal));
-            let back = admittance * dot(pull, along);
+            let back = admittance * dot(spring.pull, along);
             (0..DEFORMATION).for_each(|k| flux[k] += back * along[k / 2] * normal[k % 2]);
             let velocity = -admittance * dot(inside.t, along) - (1.0 + creep::FORGETS) * back;
-            springs.follow([at, lane], [1.0, 0.0], along.map(|along| velocity * along), pull);
+            springs.follow(&spring, along.map(|along| velocity * along));
             return flux;
         }
         let rotation = creep::rotation(inside.f);
-        let pull = springs.pull().of_lane(at, lane, rotation, stiffness);
-        let seen = Trace { t: [0, 1].map(|i| inside.t[i] + pull[i]), ..*inside };
+        let spring = springs.pull().of_lane(at, lane, rotation, stiffness);
+        let seen = Trace { t: [0, 1].map(|i| inside.t[i] + spring.pull[i]), ..*inside };
         let flux = flux(&seen);
         let back = times([flux[0], flux[1], flux[2], flux[3]], normal);
         let forgets = creep::FORGETS * admittance;
-        let velocity = [0, 1].map(|i| -back[i] - inside.v[i] - forgets * pull[i]);
-        springs.follow([at, lane], rotation, velocity, pull);
+        let velocity = [0, 1].map(|i| -back[i] - inside.v[i] - forgets * spring.pull[i]);
+        springs.follow(&spring, velocity);
         flux
     }
 
@@ -256,13 +282,13 @@ impl Block<'_> {
             return;
         }
         let rotation = creep::rotation(std::array::from_fn(|k| minus.f[k] + plus.f[k]));
-        let pull = springs.pull().of_lane(at, lane, rotation, stiffness);
+        let spring = springs.pull().of_lane(at, lane, rotation, stiffness);
         let density = [self.material(), material].map(|law| scheme.laws[law].density());
         let moved = |t: [f64; 2]| summed_impedance([minus, plus], normal, density).solve(t);
-        let back = moved(pull);
+        let back = moved(spring.pull);
         (0..DEFORMATION).for_each(|k| flux[k] += back[k / 2] * normal[k % 2]);
-        let velocity = moved([0, 1].map(|i| plus.t[i] - minus.t[i] - (1.0 + creep::FORGETS) * pull[i]));
-        springs.follow([at, lane], rotation, velocity, pull);
+        let velocity = moved([0, 1].map(|i| plus.t[i] - minus.t[i] - (1.0 + creep::FORGETS) * spring.pull[i]));
+        springs.follow(&spring, velocity);
     }
 }
 
@@ -272,20 +298,20 @@ pub(super) struct SpringFace<L> {
     rotation: [L; 2],
     /// l k R, Pa.
     modulus: [L; 2],
-    /// (1 + epsilon)/l, 1/m.
-    forgotten: L,
+    /// 1/l, 1/m.
+    inverse: L,
     normal: [L; 2],
 }
 
 /// R of the mean F of both sides at the first and the last point of a face: one square root a face. The sides must agree to the bit, whichever
 /// of the two points is the first.
 #[inline(always)]
-fn ends<L: Lanes, O: Other, const W: usize>(own: &[[F8; W]], other: &O) -> [L; 2] {
+fn rotation_of<L: Lanes, O: Other, const W: usize>(own: &[[F8; W]], other: &O) -> [L; 2] {
     let last = own.len() - 1;
     let (first_there, last_there) = (other.load::<L, W>(0), other.load::<L, W>(last));
     let mut f = [L::zero(); DEFORMATION];
-    for (k, f) in f.iter_mut().enumerate() {
-        *f = (L::load(&own[0][k]) + first_there[k]) + (L::load(&own[last][k]) + last_there[k]);
+    for k in 0..DEFORMATION {
+        f[k] = (L::load(&own[0][k]) + first_there[k]) + (L::load(&own[last][k]) + last_there[k]);
     }
     creep::rotation(f)
 }

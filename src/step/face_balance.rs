@@ -57,7 +57,7 @@ impl FaceBalance<'_, '_> {
         let points = sides.own.as_chunks::<W>().0;
         let springs = match pull {
             Some(pull) => {
-                Some((pull, pull.face::<L, _, W>(points, sides.other, (normal, metric.length(face)))))
+                Some((pull, pull.face::<L, _, W>(points, sides.other, (normal, metric.inverse_length[face]))))
             }
             None => None,
         };

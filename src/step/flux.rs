@@ -88,7 +88,9 @@ impl Faces<'_> {
         let lift = &mut self.lift.as_chunks_mut::<UNKNOWNS>().0[m * face..m * (face + 1)];
         // No closures in kernels, see `lane`.
         let mut springs = match (SPRINGS, &mut self.springs) {
-            (true, Some(springs)) => Some((springs.pull.face::<L, O, W>(own, &other, (normal, length)), springs)),
+            (true, Some(springs)) => {
+                Some((springs.pull.face::<L, O, W>(own, &other, (normal, metric.inverse_length[face])), springs))
+            }
             _ => None,
         };
         for point in 0..m {

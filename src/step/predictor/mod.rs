@@ -6,6 +6,7 @@
 
 mod rates;
 pub mod transfer;
+mod turn;
 
 use super::history::recall;
 use super::sweeps::Sweep;
@@ -17,6 +18,7 @@ use crate::state::UNKNOWNS;
 use crate::tensor::{AXES, DEFORMATION};
 use rates::Rates;
 use transfer::{ToNodes, ToPoints};
+use turn::{Plain, Turn, Turned};
 
 /// Arrays of one block at its points; [point][field] each, those of time nodes with the node outermost.
 #[derive(Default)]
@@ -103,6 +105,9 @@ pub struct Predictor<'a, M, C> {
 
 /// What evaluates the sources anew before a sweep.
 pub type Renew<'a> = &'a dyn Fn(&Sweep, &mut Arrays);
+
+/// U_p from which a time node begins: F of the first, p of the second, [p][6] both.
+type Base<'a> = [&'a [F8]; 2];
 
 /// dt times a row of a sweep's matrix; at most 7 time nodes.
 type Row = [f64; 8];
@@ -220,7 +225,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
     /// u = U^n + dt sum_k W[k] r_k at one time node, `dt` after t_n, and Q of it, from `base`: F^n of the first, p of the second. F and the
     /// law first, then v: together they would need more registers than there are.
     #[inline(always)]
-    fn sample<L: Lanes>(&self, base: [&[F8]; 2], before: &[F8], row: &[f64], dt: f64, turn: impl Turn<L>, q: &mut [F8]) {
+    fn sample<L: Lanes>(&self, base: Base, before: &[F8], row: &[f64], dt: f64, turn: impl Turn<L>, q: &mut [F8]) {
         // Four points of the first sweep, as at degree 1, by themselves: all loops are unrolled.
         match (base[0].len(), row) {
             (24, []) => self.sample_of::<L>([&base[0][..24], &base[1][..24]], before, &[], dt, turn, q),
@@ -230,17 +235,9 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
 
     /// [`Predictor::sample`] for lengths that may be constants.
     #[inline(always)]
-    fn sample_of<L: Lanes>(
-        &self,
-        base: [&[F8]; 2],
-        before: &[F8],
-        row: &[f64],
-        dt: f64,
-        turn: impl Turn<L>,
-        q: &mut [F8],
-    ) {
-        let (base, before) = ([base[0].as_chunks::<UNKNOWNS>().0, base[1].as_chunks::<UNKNOWNS>().0], before.as_chunks::<UNKNOWNS>().0);
-        let [base, momenta] = [base[0], &base[1][..base[0].len()]];
+    fn sample_of<L: Lanes>(&self, base: Base, before: &[F8], row: &[f64], dt: f64, turn: impl Turn<L>, q: &mut [F8]) {
+        let [base, momenta] = [base[0].as_chunks::<UNKNOWNS>().0, base[1].as_chunks::<UNKNOWNS>().0];
+        let (momenta, before) = (&momenta[..base.len()], before.as_chunks::<UNKNOWNS>().0);
         let q = &mut q.as_chunks_mut::<UNKNOWNS>().0[..base.len()];
         let twins = if count::<M>() == 0 { base.len() / 2 * 2 } else { 0 };
         let (pairs, rest) = q.split_at_mut(twins);
@@ -374,38 +371,4 @@ fn put<L: Lanes>(stress: [L; 4], q: &mut [F8; UNKNOWNS]) {
     stress[1].store(&mut q[1]);
     stress[2].store(&mut q[4]);
     stress[3].store(&mut q[5]);
-}
-
-/// From P to what is differentiated along xi1 (first two) and xi2.
-trait Turn<L>: Copy {
-    /// [along xi1 of row 1, of row 2, along xi2 of row 1, of row 2].
-    fn apply(self, stress: [L; 4]) -> [L; 4];
-}
-
-/// dxi_b/dX_a P_ia, with the same metric [b][a] at all points.
-#[derive(Clone, Copy)]
-struct Turned<L>([L; 4]);
-
-impl<L: Lanes> Turn<L> for Turned<L> {
-    #[inline(always)]
-    fn apply(self, p: [L; 4]) -> [L; 4] {
-        let m = self.0;
-        [
-            m[0].mul_add(p[0], m[1] * p[1]),
-            m[0].mul_add(p[2], m[1] * p[3]),
-            m[2].mul_add(p[0], m[3] * p[1]),
-            m[2].mul_add(p[2], m[3] * p[3]),
-        ]
-    }
-}
-
-/// P_i1, P_i2.
-#[derive(Clone, Copy)]
-struct Plain;
-
-impl<L: Lanes> Turn<L> for Plain {
-    #[inline(always)]
-    fn apply(self, p: [L; 4]) -> [L; 4] {
-        [p[0], p[2], p[1], p[3]]
-    }
 }
