@@ -169,6 +169,6 @@ impl Riemann for Dual {
             out[2 * i + 1] = half * v.mul_add(-n[1], twice.add[2 * i + 1]);
             out[4 + i] = -half * twice.t[i];
         }
-        (out, L::splat(0.5) * twice.admittance)
+        (out, twice.admittance)
     }
 }

@@ -101,8 +101,13 @@ impl Faces<'_> {
                 let held = held(&load_array::<L, W>(&own[point]), &there, self.medium.density);
                 store_array(held, &mut self.held.as_chunks_mut::<2>().0[m * face + point]);
             }
-            let (mut lifted, admittance) = riemann.lifted_and_admittance(&minus, &plus, normal, &medium, length);
+            let (mut lifted, twice) = if SPRINGS {
+                riemann.lifted_and_admittance(&minus, &plus, normal, &medium, length)
+            } else {
+                (riemann.lifted(&minus, &plus, normal, &medium, length), L::zero())
+            };
             if let Some((of_face, springs)) = &mut springs {
+                let admittance = L::splat(0.5) * twice;
                 springs.act(m * face + point, of_face, [&minus, &plus], admittance, &mut lifted);
             }
             store_array(lifted, &mut lift[point]);
