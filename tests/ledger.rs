@@ -58,6 +58,21 @@ fn what_jumps_do_not_explain_falls_under_refinement_with_the_order_of_the_scheme
     }
 }
 
+/// Half of a bar bends against a plane of symmetry, RK2 at S2: what springs store counts as energy, and what they forget is lost, at free
+/// sides, in the plane and between cells. Measured: what jumps do not explain is 4e-5 of the loss, where 1.2 % of
+/// it is stored at the end, and 1.3 % were not explained without that.
+#[test]
+fn with_springs_jumps_explain_what_the_steps_lose() {
+    let bar = Body::rectangle([6.0, 1.0], [6, 1]).sides("free").side("left", "symmetry", "");
+    let bar = bar.material("neo-hookean", [17e6, 0.3, 1100.0], "").velocity(["0", "0.1*cos(pi*(x+6)/6)"]).end(2.0);
+    let outcome = of(&scene("bar", bar), "rk-dgfem", 2, &["scheme.springs=true", "output.0.every_steps=1000"]);
+    let [lost, stored] =
+        [part(&outcome, "flux_dissipation") + part(&outcome, "boundary_dissipation"), outcome.number("face_energy")];
+    println!("lost {lost:.4e}, stored {stored:.4e}, beyond jumps {:.4e}", beyond_jumps(&outcome) / lost);
+    assert!(stored > 0.01 * lost, "{stored:e} of {lost:e}");
+    assert!(beyond_jumps(&outcome).abs() < 1e-3 * lost, "{:e} of {lost:e}", beyond_jumps(&outcome));
+}
+
 /// The paper's impact on 15 x 15 cells until the wave has come back. RK's steps only lose; of ADER's some give, about
 /// one each time the front enters a cell, which its predictor does not see coming. The control of the curl moves next to nothing.
 /// Measured, of E(0) for ADER-DGMPM: faces .0187, boundary .0081, control 8e-6; given, of what was lost: faces .026,

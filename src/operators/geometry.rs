@@ -40,6 +40,7 @@ impl Metric<F8> {
     }
 
     /// The map of the cell in one lane.
+    #[inline]
     pub fn lane(&self, lane: usize) -> Metric<f64> {
         let pair = |x: &[F8; 2]| x.map(|x| x.0[lane]);
         Metric {
@@ -181,6 +182,15 @@ impl<'a> BlockMetric<'a> {
                 (metric.normal(face), metric.length(face))
             }
             Some(curved) => curved.at_face(face, point),
+        }
+    }
+
+    /// 1/|dX/ds| at a point of a face, 1/m.
+    #[inline(always)]
+    pub fn inverse_length<L: Lanes>(&self, face: usize, point: usize) -> L {
+        match self.curved {
+            None => L::load(&self.straight.inverse_length[face]),
+            Some(curved) => L::splat(1.0) / curved.at_face::<L>(face, point).1,
         }
     }
 

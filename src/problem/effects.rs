@@ -111,7 +111,8 @@ fn of_the_step(Problem { scene, body, scheme, .. }: &Problem, report: &Report) -
     add(report.balance.is_some(), "balance of energy".to_owned(), at_faces + in_cells, report.held.balance);
     if scheme.has_springs() {
         let seconds = report.phases.parts[Part::Springs as usize];
-        let own = Effect::new("springs", count(scheme.cells_with_springs(), "cell"), seconds);
+        let place = format!("{}; and a part of the flux", count(scheme.cells_with_springs(), "cell"));
+        let own = Effect::new("springs", place, seconds);
         out.push(own.bytes(report.held.springs));
     }
     let (seconds, times) = report.regrids;

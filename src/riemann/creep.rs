@@ -7,7 +7,7 @@
 //! v* = mean v + Y ([t] - k R a),    da/dt = R^T Y ([t] - (1 + epsilon) k R a),    k = beta M / l
 //! ```
 //!
-//! R is the rotation of the mean F of both sides, so that a turns with the body, M = rho0 c_p^2 of the law at F = 1 (Pa, between two laws
+//! R is the rotation of the mean F of both sides (at the ends of the face between cells of one law), so that a turns with the body, M = rho0 c_p^2 of the law at F = 1 (Pa, between two laws
 //! [`in_series`]) and l the length of the face. What the jump of traction does at the face is then
 //! `[t].(v* - mean v)` = Y^-1 |da/dt|^2 + d/dt (k/2 |a|^2): a loss and a stored energy, neither below 0, whatever R and the law.
 //! Waves that pass a cell in less than the relaxation time 1/(Y k), some 2 l/(beta theta c_p), see the flux as it is. What lasts longer is

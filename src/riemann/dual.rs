@@ -149,6 +149,18 @@ impl Riemann for Dual {
     /// In jumps alone.
     #[inline(always)]
     fn lifted<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>, scale: L) -> [L; 6] {
+        self.lifted_and_admittance(minus, plus, n, medium, scale).0
+    }
+
+    #[inline(always)]
+    fn lifted_and_admittance<L: Lane>(
+        &self,
+        minus: &Trace<L>,
+        plus: &Trace<L>,
+        n: [L; 2],
+        medium: &Medium<L>,
+        scale: L,
+    ) -> ([L; 6], L) {
         let (twice, half) = (Self::twice(minus, plus, n, medium), L::splat(0.5) * scale);
         let mut out = [L::zero(); 6];
         for i in 0..2 {
@@ -157,6 +169,6 @@ impl Riemann for Dual {
             out[2 * i + 1] = half * v.mul_add(-n[1], twice.add[2 * i + 1]);
             out[4 + i] = -half * twice.t[i];
         }
-        out
+        (out, twice.admittance)
     }
 }

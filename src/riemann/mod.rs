@@ -93,6 +93,19 @@ pub trait Riemann: Copy + std::fmt::Debug + Send + Sync + 'static {
         L::zero()
     }
 
+    /// [`Riemann::lifted`] and twice [`Riemann::admittance`], for a flux that has the second on its way to the first.
+    #[inline(always)]
+    fn lifted_and_admittance<L: Lane>(
+        &self,
+        minus: &Trace<L>,
+        plus: &Trace<L>,
+        n: [L; 2],
+        medium: &Medium<L>,
+        scale: L,
+    ) -> ([L; 6], L) {
+        (self.lifted(minus, plus, n, medium, scale), L::splat(2.0) * self.admittance(minus, plus, medium))
+    }
+
     /// scale (Flux*.N - own flux of the F rows), the own flux being -v^- (x) N: what is lifted (14) where the rows of F
     /// stand in strong form. Without a jump it is 0 there, exactly.
     #[inline(always)]

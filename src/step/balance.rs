@@ -19,7 +19,8 @@
 //! ```
 //!
 //! which is zero without jumps and not negative for a dissipative flux (acoustic: half [t] Z^-1 [t] + half [v] Z [v]),
-//! and at a boundary the work v*.t* minus (v* - v).(t* - t) + a.s. A Runge-Kutta stage counts with dt b_i; ADER has
+//! and at a boundary the work v*.t* minus (v* - v).(t* - t) + a.s. Springs of faces ([`crate::riemann::creep`]) store
+//! k R (a + dt/2 da/dt) . (R da/dt) of that in a step, which D is without: what they forget is lost. A Runge-Kutta stage counts with dt b_i; ADER has
 //! one flux and one source a step, from averages over its time nodes.
 //!
 //! In the limit of small steps D is what is lost, to rounding. It is not what ADER loses in a step of usual size: its
@@ -32,7 +33,7 @@ use crate::lane::{F8, Lanes, load_array};
 use crate::riemann::tangent;
 use crate::state::UNKNOWNS;
 use crate::sum::exact_sum;
-use crate::tensor::{AXES, DEFORMATION, dot, times};
+use crate::tensor::{DEFORMATION, dot, times};
 
 /// The balance of energy since the start of a run, in J per metre of thickness.
 ///
@@ -115,8 +116,8 @@ pub(super) struct FacePower<'a> {
     pub plus: &'a [F8],
     /// Flux*.
     pub flux: &'a [F8; UNKNOWNS],
-    /// k R a, what the spring of the face pulls with, Pa: the power of that is stored.
-    pub pull: &'a [F8; AXES],
+    /// What the spring of the face stores in the step, W/m^2.
+    pub stored: &'a F8,
 }
 
 impl FacePower<'_> {
@@ -127,13 +128,12 @@ impl FacePower<'_> {
         let x = load_array::<L, UNKNOWNS>(self.flux);
         let g = [x[0], x[1], x[2], x[3]];
         let (v, a) = (times(g, normal), times(g, tangent(normal)));
-        let pull = load_array::<L, AXES>(self.pull);
         let half = L::splat(0.5);
-        let mut power = L::zero();
+        let mut power = -L::load(self.stored);
         for i in 0..2 {
             let star_v = -v[i] - half * (m[DEFORMATION + i] + p[DEFORMATION + i]);
             let star_t = -x[DEFORMATION + i] - half * (m[UNKNOWNS + i] + p[UNKNOWNS + i]);
-            power = star_v.mul_add(p[UNKNOWNS + i] - m[UNKNOWNS + i] - pull[i], power);
+            power = star_v.mul_add(p[UNKNOWNS + i] - m[UNKNOWNS + i], power);
             power = star_t.mul_add(p[DEFORMATION + i] - m[DEFORMATION + i], power);
             power = power - a[i] * (p[W - 2 + i] - m[W - 2 + i]);
         }

@@ -21,7 +21,7 @@ use crate::material::Material;
 use crate::operators::{PointMatrices, Share, with_nodes, with_terms};
 use crate::riemann::Looks;
 use crate::state::{State, UNKNOWNS};
-use crate::tensor::DEFORMATION;
+use crate::tensor::{AXES, DEFORMATION};
 
 /// The work on one block.
 pub(super) struct Begin<'a> {
@@ -107,7 +107,7 @@ impl Begin<'_> {
                 let start = phases.start();
                 block.held_rate(self.state, &mut arrays.held_at_nodes);
                 let (fields, points) = (&arrays.held_at_nodes[..], &mut arrays.held);
-                block.scheme.kernel.run(FieldsToPoints::<_, UNKNOWNS> { matrices, fields, nodes, between, points });
+                block.scheme.kernel.run(FieldsToPoints::<_, AXES> { matrices, fields, nodes, between, points });
                 phases.book_part(Part::Springs, start);
             }
         });

@@ -5,10 +5,10 @@
 //! All stages of a step see a of its start; the step is some hundredth of the relaxation time, and what the step then loses at a face
 //! is Y^-1 |da/dt|^2 (1 - k Y dt/2), above 0.
 
+use super::across::Other;
 use super::block::Block;
-use crate::boundary::GivesBack;
+use crate::boundary::{FacePoint, GivesBack};
 use crate::lane::{F8, Lanes, load_array, store_array};
-use crate::operators::Neighbour;
 use crate::riemann::{Medium, Riemann, Trace, creep, summed_impedance, tangent};
 use crate::state::UNKNOWNS;
 use crate::tensor::{AXES, DEFORMATION, dot, times};
@@ -27,6 +27,8 @@ pub(super) struct Pull<'a> {
     start: &'a [F8],
     /// k l, Pa.
     modulus: f64,
+    /// The step, s.
+    step: f64,
 }
 
 /// The springs of the faces of a block in a stage.
@@ -39,6 +41,8 @@ pub(super) struct Springs<'a> {
     now: &'a mut [F8],
     /// What a rate counts in the step, s.
     dt: f64,
+    /// The power that the spring of the last lane at a boundary or at another material stores, W/m^2.
+    pub stored: f64,
 }
 
 impl<'a> Springs<'a> {
@@ -55,43 +59,39 @@ impl<'a> Springs<'a> {
             memory.copy_from_slice(now);
             memory
         };
-        Some(Self { pull: Pull { start, modulus }, before, now, dt: block.factor() })
+        Some(Self { pull: Pull { start, modulus, step: block.stage.dt }, before, now, dt: block.factor(), stored: 0.0 })
     }
 
     /// The same for a shorter time.
     pub fn again(&mut self) -> Springs<'_> {
-        Springs { pull: self.pull, before: self.before, now: self.now, dt: self.dt }
+        Springs { pull: self.pull, before: self.before, now: self.now, dt: self.dt, stored: 0.0 }
     }
 
-    /// A point between two cells of one law: moves a, and takes the pull of the spring out of what is lifted.
+    /// A point of a face between two cells of one law, with the `admittance` Y: moves a, and takes the pull of the spring out of what is `lifted`.
     #[inline(always)]
-    pub fn act<L: Lanes, R: Riemann>(
+    pub fn act<L: Lanes>(
         &mut self,
         at: usize,
-        riemann: &R,
-        sides: [&Trace<L>; 2],
-        (normal, length): ([L; 2], L),
-        medium: &Medium<L>,
-        lift: &mut [F8; UNKNOWNS],
+        face: &SpringFace<L>,
+        [minus, plus]: [&Trace<L>; 2],
+        admittance: L,
+        lifted: &mut [L; UNKNOWNS],
     ) {
-        let point = Point::new(riemann, sides, medium);
         // What is lifted has l v*, and v* has -Y k R a with k = modulus/l.
-        let pull = self.pull.of::<L>(at, point.rotation);
-        let mut lifted = load_array::<L, UNKNOWNS>(lift);
+        let (pull, normal) = (self.pull.of::<L>(at, face.modulus), face.normal);
+        let forgotten = L::splat(1.0 + creep::FORGETS) * face.inverse;
         for i in 0..AXES {
-            let back = point.admittance * pull[i];
+            let back = admittance * pull[i];
             for k in 0..AXES {
                 lifted[AXES * i + k] = back.mul_add(normal[k], lifted[AXES * i + k]);
             }
         }
-        store_array(lifted, lift);
-        let (forgotten, [minus, plus]) = (L::splat(1.0 + creep::FORGETS) / length, sides);
         // No closures: the compiler need not inline them, and a call stands without the features of the processor.
         let mut moved = [L::zero(); AXES];
         for i in 0..AXES {
-            moved[i] = point.admittance * (plus.t[i] - minus.t[i] - pull[i] * forgotten);
+            moved[i] = admittance * (plus.t[i] - minus.t[i] - pull[i] * forgotten);
         }
-        let rate = creep::turned_back(point.rotation, moved);
+        let rate = creep::turned_back(face.rotation, moved);
         for (i, rate) in rate.iter().enumerate() {
             let before = L::load(&self.before[AXES * at + i]);
             L::splat(self.dt).mul_add(*rate, before).store(&mut self.now[AXES * at + i]);
@@ -103,56 +103,93 @@ impl<'a> Springs<'a> {
         for k in AXES * at..AXES * (at + 1) {
             self.now[k].0[lane] = self.before[k].0[lane];
         }
+        self.stored = 0.0;
     }
 
-    /// A point of a lane whose face has moved with v* - mean v, m/s.
-    pub fn follow(&mut self, at: usize, lane: usize, rotation: [f64; 2], velocity: [f64; 2]) {
-        let rate = creep::turned_back(rotation, velocity);
+    /// A point of a lane whose creep grows by R^T `velocity`, m/s.
+    fn follow(&mut self, spring: &Spring, velocity: [f64; 2]) {
+        let rate = creep::turned_back(spring.rotation, velocity);
         for (i, rate) in rate.iter().enumerate() {
-            let k = AXES * at + i;
+            let (k, lane) = (AXES * spring.at + i, spring.lane);
             self.now[k].0[lane] = self.dt.mul_add(*rate, self.before[k].0[lane]);
         }
     }
 }
 
 impl Pull<'_> {
-    /// l k R a.
+    /// A face between cells of one law, from the numbers of its points on both sides, with the normal of `own` and 1/l.
     #[inline(always)]
-    fn of<L: Lanes>(&self, at: usize, rotation: [L; 2]) -> [L; 2] {
-        let a = load_array::<L, AXES>(&self.start[AXES * at..][..AXES]);
-        let ([one, two], modulus) = (creep::turned(rotation, a), L::splat(self.modulus));
-        [modulus * one, modulus * two]
+    pub fn face<L: Lanes, O: Other, const W: usize>(
+        &self,
+        own: &[[F8; W]],
+        other: &O,
+        (normal, inverse): ([L; 2], L),
+    ) -> SpringFace<L> {
+        let (rotation, modulus) = (rotation_of::<L, O, W>(own, other), L::splat(self.modulus));
+        SpringFace { rotation, modulus: [modulus * rotation[0], modulus * rotation[1]], inverse, normal }
     }
 
-    /// k R a at a point between two cells of one law, Pa; adds what it does to Flux*.
+    /// l k R a, from l k R.
+    #[inline(always)]
+    fn of<L: Lanes>(&self, at: usize, modulus: [L; 2]) -> [L; 2] {
+        creep::turned(modulus, load_array::<L, AXES>(&self.start[AXES * at..][..AXES]))
+    }
+
+    /// k R (a + dt/2 da/dt) . (R da/dt) at a point between two cells of one law, the power that its spring stores in the step, W/m^2; adds what
+    /// k R a does to Flux*.
     #[inline(always)]
     pub fn meter<L: Lanes, R: Riemann>(
         &self,
         at: usize,
+        face: &SpringFace<L>,
         riemann: &R,
-        sides: [&Trace<L>; 2],
-        (normal, length): ([L; 2], L),
+        [minus, plus]: [&Trace<L>; 2],
         medium: &Medium<L>,
         flux: &mut [F8; UNKNOWNS],
-    ) -> [L; 2] {
-        let point = Point::new(riemann, sides, medium);
-        let inverse = L::splat(1.0) / length;
-        let [one, two] = self.of::<L>(at, point.rotation);
-        let pull = [one * inverse, two * inverse];
-        let mut sum = load_array::<L, UNKNOWNS>(flux);
+    ) -> L {
+        let admittance = riemann.admittance(minus, plus, medium);
+        let ([one, two], grows, normal) = (self.of::<L>(at, face.modulus), L::splat(1.0 + creep::FORGETS), face.normal);
+        let pull = [one * face.inverse, two * face.inverse];
+        let half = L::splat(0.5 * self.modulus * self.step) * face.inverse;
+        let (mut sum, mut stored) = (load_array::<L, UNKNOWNS>(flux), L::zero());
         for i in 0..AXES {
+            let back = admittance * pull[i];
             for k in 0..AXES {
-                sum[AXES * i + k] = (point.admittance * pull[i]).mul_add(normal[k], sum[AXES * i + k]);
+                sum[AXES * i + k] = back.mul_add(normal[k], sum[AXES * i + k]);
             }
+            let velocity = admittance * (plus.t[i] - minus.t[i] - grows * pull[i]);
+            stored = velocity.mul_add(half.mul_add(velocity, pull[i]), stored);
         }
         store_array(sum, flux);
-        pull
+        stored
     }
 
-    /// k R a in a lane, Pa.
-    fn of_lane(&self, at: usize, lane: usize, rotation: [f64; 2], stiffness: f64) -> [f64; 2] {
+    /// A point in a lane, with its stiffness k, Pa/m.
+    fn of_lane(&self, at: usize, lane: usize, rotation: [f64; 2], stiffness: f64) -> Spring {
         let a = [0, 1].map(|k| self.start[AXES * at + k].0[lane]);
-        creep::turned(rotation, a).map(|a| stiffness * a)
+        let pull = creep::turned(rotation, a).map(|a| stiffness * a);
+        Spring { at, lane, rotation, stiffness, pull, step: self.step }
+    }
+}
+
+/// The spring of a point in a lane.
+struct Spring {
+    at: usize,
+    lane: usize,
+    /// R.
+    rotation: [f64; 2],
+    /// k, Pa/m.
+    stiffness: f64,
+    /// k R a, Pa.
+    pull: [f64; 2],
+    /// The step, s.
+    step: f64,
+}
+
+impl Spring {
+    /// k R (a + dt/2 da/dt) . (R da/dt), W/m^2, with R da/dt = `velocity`: what it stores in the step.
+    fn stores(&self, velocity: [f64; 2]) -> f64 {
+        dot(self.pull, velocity) + 0.5 * self.stiffness * self.step * dot(velocity, velocity)
     }
 }
 
@@ -160,21 +197,26 @@ impl Pull<'_> {
 pub(super) enum Pulling<'a, 'b> {
     /// They move with their faces.
     Moving(&'b mut Springs<'a>),
-    /// They only pull.
-    Still(Pull<'a>),
+    /// They only pull; what they store, W/m^2, is out.
+    Still(Pull<'a>, &'b mut f64),
 }
 
 impl Pulling<'_, '_> {
     fn pull(&self) -> Pull<'_> {
         match self {
             Pulling::Moving(springs) => springs.pull,
-            Pulling::Still(pull) => *pull,
+            Pulling::Still(pull, _) => *pull,
         }
     }
 
-    fn follow(self, at: usize, lane: usize, rotation: [f64; 2], velocity: [f64; 2]) {
-        if let Pulling::Moving(springs) = self {
-            springs.follow(at, lane, rotation, velocity);
+    /// The face moves by R da/dt = `velocity`, m/s.
+    fn follow(self, spring: &Spring, velocity: [f64; 2]) {
+        match self {
+            Pulling::Moving(springs) => {
+                springs.follow(spring, velocity);
+                springs.stored = spring.stores(velocity);
+            }
+            Pulling::Still(_, stored) => *stored = spring.stores(velocity),
         }
     }
 }
@@ -189,36 +231,39 @@ impl Block<'_> {
     pub(super) fn pulled_at_boundary(
         &self,
         [face, point, lane]: [usize; 3],
-        how: GivesBack,
+        group: usize,
+        here: &FacePoint,
         inside: &Trace<f64>,
         springs: Pulling,
         flux: impl FnOnce(&Trace<f64>) -> [f64; UNKNOWNS],
     ) -> [f64; UNKNOWNS] {
-        let at = face * self.scheme.operators.line.m + point;
-        let Neighbour::Boundary(group) = self.scheme.operators.blocks.neighbours[self.number][face][lane] else {
+        let how = self.scheme.gives_back(group);
+        if how == GivesBack::Nothing {
             return flux(inside);
-        };
-        let (normal, length) = self.metric().at_face_of(lane, face, point);
+        }
+        let (normal, at) = (here.normal, face * self.scheme.operators.line.m + point);
+        let (_, length) = self.metric().at_face_of(lane, face, point);
         let stiffness = self.scheme.spring_at(group, self.material()) / length;
+        let admittance = here.admittance(inside);
         if how == GivesBack::Along {
             // The mean of F and its image turns nowhere, and the pull is shared with the image. What the condition adds to the rows of F for the
             // jump of F to the image is no creep.
-            let pull = springs.pull().of_lane(at, lane, [1.0, 0.0], 0.5 * stiffness);
+            let spring = springs.pull().of_lane(at, lane, [1.0, 0.0], 0.5 * stiffness);
             let (mut flux, along) = (flux(inside), tangent(normal));
-            let admittance = self.face_point(face, point, lane).admittance(inside);
-            let back = admittance * dot(pull, along);
+            let back = admittance * dot(spring.pull, along);
             (0..DEFORMATION).for_each(|k| flux[k] += back * along[k / 2] * normal[k % 2]);
             let velocity = -admittance * dot(inside.t, along) - (1.0 + creep::FORGETS) * back;
-            springs.follow(at, lane, [1.0, 0.0], along.map(|along| velocity * along));
+            springs.follow(&spring, along.map(|along| velocity * along));
             return flux;
         }
         let rotation = creep::rotation(inside.f);
-        let pull = springs.pull().of_lane(at, lane, rotation, stiffness);
-        let seen = Trace { t: [0, 1].map(|i| inside.t[i] + pull[i]), ..*inside };
+        let spring = springs.pull().of_lane(at, lane, rotation, stiffness);
+        let seen = Trace { t: [0, 1].map(|i| inside.t[i] + spring.pull[i]), ..*inside };
         let flux = flux(&seen);
         let back = times([flux[0], flux[1], flux[2], flux[3]], normal);
-        let forgets = creep::FORGETS * self.face_point(face, point, lane).admittance(inside);
-        springs.follow(at, lane, rotation, [0, 1].map(|i| -back[i] - inside.v[i] - forgets * pull[i]));
+        let forgets = creep::FORGETS * admittance;
+        let velocity = [0, 1].map(|i| -back[i] - inside.v[i] - forgets * spring.pull[i]);
+        springs.follow(&spring, velocity);
         flux
     }
 
@@ -238,31 +283,36 @@ impl Block<'_> {
             return;
         }
         let rotation = creep::rotation(std::array::from_fn(|k| minus.f[k] + plus.f[k]));
-        let pull = springs.pull().of_lane(at, lane, rotation, stiffness);
+        let spring = springs.pull().of_lane(at, lane, rotation, stiffness);
         let density = [self.material(), material].map(|law| scheme.laws[law].density());
         let moved = |t: [f64; 2]| summed_impedance([minus, plus], normal, density).solve(t);
-        let back = moved(pull);
+        let back = moved(spring.pull);
         (0..DEFORMATION).for_each(|k| flux[k] += back[k / 2] * normal[k % 2]);
-        springs.follow(
-            at,
-            lane,
-            rotation,
-            moved([0, 1].map(|i| plus.t[i] - minus.t[i] - (1.0 + creep::FORGETS) * pull[i])),
-        );
+        let velocity = moved([0, 1].map(|i| plus.t[i] - minus.t[i] - (1.0 + creep::FORGETS) * spring.pull[i]));
+        springs.follow(&spring, velocity);
     }
 }
 
-/// What springs see of a point between two cells of one law.
-struct Point<L> {
+/// What springs know of a face between cells of one law.
+pub(super) struct SpringFace<L> {
+    /// R.
     rotation: [L; 2],
-    admittance: L,
+    /// l k R, Pa.
+    modulus: [L; 2],
+    /// 1/l, 1/m.
+    inverse: L,
+    normal: [L; 2],
 }
 
-impl<L: Lanes> Point<L> {
-    #[inline(always)]
-    fn new<R: Riemann>(riemann: &R, [minus, plus]: [&Trace<L>; 2], medium: &Medium<L>) -> Self {
-        let (m, p) = (minus.f, plus.f);
-        let f = [m[0] + p[0], m[1] + p[1], m[2] + p[2], m[3] + p[3]];
-        Self { rotation: creep::rotation(f), admittance: riemann.admittance(minus, plus, medium) }
+/// R of the mean F of both sides at the first and the last point of a face: one square root a face. The sides must agree to the bit, whichever
+/// of the two points is the first.
+#[inline(always)]
+fn rotation_of<L: Lanes, O: Other, const W: usize>(own: &[[F8; W]], other: &O) -> [L; 2] {
+    let last = own.len() - 1;
+    let (first_there, last_there) = (other.load::<L, W>(0), other.load::<L, W>(last));
+    let mut f = [L::zero(); DEFORMATION];
+    for k in 0..DEFORMATION {
+        f[k] = (L::load(&own[0][k]) + first_there[k]) + (L::load(&own[last][k]) + last_there[k]);
     }
+    creep::rotation(f)
 }

@@ -12,7 +12,6 @@ use crate::lane::{F8, Lanes, load_array, store_array};
 use crate::operators::Neighbour;
 use crate::riemann::{Looks, Riemann};
 use crate::state::UNKNOWNS;
-use crate::tensor::AXES;
 
 /// The traces of a face of a block, [point][width].
 #[derive(Clone, Copy)]
@@ -54,21 +53,26 @@ impl FaceBalance<'_, '_> {
             medium.turn = turn::<L, _, W>(sides.own.as_chunks::<W>().0, sides.other, block.turning());
         }
         let weights = &scheme.operators.line.basis.weights[..scheme.operators.line.m];
-        for (point, (own, weight)) in sides.own.as_chunks::<W>().0.iter().zip(weights).enumerate() {
+        let points = sides.own.as_chunks::<W>().0;
+        for (point, (own, weight)) in points.iter().zip(weights).enumerate() {
             let (normal, length) = metric.at_face::<L>(face, point);
+            let springs = match pull {
+                Some(pull) => {
+                    let inverse = metric.inverse_length::<L>(face, point);
+                    Some((pull, pull.face::<L, _, W>(points, sides.other, (normal, inverse))))
+                }
+                None => None,
+            };
             let beyond = turned::<L, R, W>(sides.other.load::<L, W>(point));
             let minus = trace_of::<L, R, W>(&load_array::<L, W>(own));
             let plus = trace_of::<L, R, W>(&beyond);
             let (mut flux, mut there, mut scale) = ([F8::ZERO; UNKNOWNS], [F8::ZERO; W], F8::ZERO);
             store_array(riemann.flux(&minus, &plus, normal, &medium), &mut flux);
             store_array(beyond, &mut there);
-            let mut pulled = [F8::ZERO; AXES];
-            if let Some(pull) = pull {
+            let mut stored = F8::ZERO;
+            if let Some((pull, of_face)) = &springs {
                 let at = face * scheme.operators.line.m + point;
-                store_array(
-                    pull.meter(at, riemann, [&minus, &plus], (normal, length), &medium, &mut flux),
-                    &mut pulled,
-                );
+                pull.meter(at, of_face, riemann, [&minus, &plus], &medium, &mut flux).store(&mut stored);
             }
             (length * L::splat(*weight * factor)).store(&mut scale);
             for (lane, neighbour) in neighbours.iter().enumerate() {
@@ -76,22 +80,20 @@ impl FaceBalance<'_, '_> {
                     // What a condition loses is booked with its work; it has no jumps, and no flux that means anything.
                     Neighbour::Boundary(_) => {
                         (0..W).for_each(|k| there[k].0[lane] = own[k].0[lane]);
-                        flux.iter_mut().chain(&mut pulled).for_each(|number| number.0[lane] = 0.0);
+                        flux.iter_mut().for_each(|number| number.0[lane] = 0.0);
+                        stored.0[lane] = 0.0;
                     }
-                    Neighbour::Interface(_, material) => {
-                        if pull.is_some() {
-                            // Springs in series in place of those of the own law.
-                            let ratio = block.spring_between(*material) / block.spring_between(block.material());
-                            pulled.iter_mut().for_each(|pull| pull.0[lane] *= ratio);
-                        }
-                        let pulling = pull.map(Pulling::Still);
+                    Neighbour::Interface(..) => {
+                        let stored = &mut stored.0[lane];
+                        *stored = 0.0;
+                        let pulling = pull.map(|pull| Pulling::Still(pull, stored));
                         let between = block.flux_of_lane([face, point, lane], own, sides.other, &mut [], pulling);
                         between.iter().for_each(|f| (0..UNKNOWNS).for_each(|k| flux[k].0[lane] = f[k]));
                     }
                     Neighbour::Cell(_) | Neighbour::Padding => {}
                 }
             }
-            let power = FacePower { minus: own, plus: &there, flux: &flux, pull: &pulled };
+            let power = FacePower { minus: own, plus: &there, flux: &flux, stored: &stored };
             power.jumps::<L, W>(&scale, normal, &mut balance.flux);
         }
     }

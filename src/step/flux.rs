@@ -10,10 +10,9 @@ use super::meeting_flux::Met;
 use super::meetings::Meetings;
 use super::outside::{ExternalWork, FaceForces};
 use super::phase::{Part, Ticks};
-use super::spring_faces::SpringFaces;
 use super::trace::{gap, held, trace_of, turn, turned, with_width};
 use super::volume::{Arrays, width};
-use crate::boundary::{FacePoint, GivesBack, Moment};
+use crate::boundary::{FacePoint, Moment};
 use crate::built;
 use crate::lane::{F8, LANES, Lanes, load_array, store_array};
 use crate::mesh::{FACES, map};
@@ -39,30 +38,45 @@ pub(super) struct Faces<'a> {
     lift: &'a mut [F8],
     /// What is held, [face][point][2], out where the flux looks at the displacement.
     held: &'a mut [F8],
+    /// The springs of the faces; none where they have none.
+    springs: Option<Springs<'a>>,
 }
 
 impl FluxWork for Faces<'_> {
     #[inline(always)]
     fn run<L: Lanes, R: Riemann>(mut self, riemann: &R) {
-        with_width!(R::LOOKS, self.metered, W => {
-            for face in 0..FACES {
-                // One loop for each way in which the traces lie: none looks at it point by point.
-                match self.other[face] {
-                    Beyond::Aligned(other) => self.of_face::<L, _, _, W>(face, other, riemann),
-                    Beyond::Joined(other) => self.of_face::<L, _, _, W>(face, other, riemann),
-                    Beyond::Apart(other) if L::PICKS => self.of_face::<L, _, _, W>(face, other, riemann),
-                    Beyond::Apart(other) => {
-                        self.of_face::<L, _, _, W>(face, LaneByLane::new::<W>(other), riemann);
-                    }
-                }
-            }
+        // With springs in loops of their own: those without know nothing of them.
+        with_width!(R::LOOKS, self.metered, W => if R::LOOKS == Looks::Displacement && self.springs.is_some() {
+            self.of_faces::<L, _, W, true>(riemann);
+        } else {
+            self.of_faces::<L, _, W, false>(riemann);
         });
     }
 }
 
 impl Faces<'_> {
     #[inline(always)]
-    fn of_face<L: Lanes, O: Other, R: Riemann, const W: usize>(&mut self, face: usize, other: O, riemann: &R) {
+    fn of_faces<L: Lanes, R: Riemann, const W: usize, const SPRINGS: bool>(&mut self, riemann: &R) {
+        for face in 0..FACES {
+            // One loop for each way in which the traces lie: none looks at it point by point.
+            match self.other[face] {
+                Beyond::Aligned(other) => self.of_face::<L, _, _, W, SPRINGS>(face, other, riemann),
+                Beyond::Joined(other) => self.of_face::<L, _, _, W, SPRINGS>(face, other, riemann),
+                Beyond::Apart(other) if L::PICKS => self.of_face::<L, _, _, W, SPRINGS>(face, other, riemann),
+                Beyond::Apart(other) => {
+                    self.of_face::<L, _, _, W, SPRINGS>(face, LaneByLane::new::<W>(other), riemann);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn of_face<L: Lanes, O: Other, R: Riemann, const W: usize, const SPRINGS: bool>(
+        &mut self,
+        face: usize,
+        other: O,
+        riemann: &R,
+    ) {
         let m = self.points;
         let mut medium = self.medium.splat::<L>();
         let own = &self.own.as_chunks::<W>().0[face * m..(face + 1) * m];
@@ -73,6 +87,14 @@ impl Faces<'_> {
         let [runs, points] = self.metric.runs(m);
         for run in 0..runs {
             let (normal, length) = self.metric.at_face::<L>(face, run);
+            // No closures in kernels, see `lane`.
+            let mut springs = match (SPRINGS, &mut self.springs) {
+                (true, Some(springs)) => {
+                    let inverse = self.metric.inverse_length::<L>(face, run);
+                    Some((springs.pull.face::<L, O, W>(own, &other, (normal, inverse)), springs))
+                }
+                _ => None,
+            };
             for point in run * points..(run + 1) * points {
                 let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[point]));
                 let there = turned::<L, R, W>(other.load::<L, W>(point));
@@ -81,7 +103,16 @@ impl Faces<'_> {
                     let held = held(&load_array::<L, W>(&own[point]), &there, self.medium.density);
                     store_array(held, &mut self.held.as_chunks_mut::<2>().0[m * face + point]);
                 }
-                store_array(riemann.lifted(&minus, &plus, normal, &medium, length), &mut lift[point]);
+                let (mut lifted, twice) = if SPRINGS {
+                    riemann.lifted_and_admittance(&minus, &plus, normal, &medium, length)
+                } else {
+                    (riemann.lifted(&minus, &plus, normal, &medium, length), L::zero())
+                };
+                if let Some((of_face, springs)) = &mut springs {
+                    let admittance = L::splat(0.5) * twice;
+                    springs.act(m * face + point, of_face, [&minus, &plus], admittance, &mut lifted);
+                }
+                store_array(lifted, &mut lift[point]);
             }
         }
     }
@@ -134,16 +165,20 @@ impl Block<'_> {
         let (metric, medium) = (self.metric(), self.medium());
         let creep = meter.creep.take();
         let mut springs = creep.and_then(|creep| Springs::new(self, creep, &mut nodes.creep));
-        let (lift, held, pull) = (&mut nodes.lift[..], &mut nodes.held[..], springs.as_ref().map(|own| own.pull));
-        flux.faces(
-            scheme.kernel,
-            Faces { metered, own, other: &other, metric, points: m, turning: self.turning(), medium, lift, held },
-        );
-        if let Some(springs) = springs.as_mut().map(Springs::again) {
-            let (start, lift, other) = (meter.phases.start(), &mut nodes.lift[..], &other);
-            flux.springs(scheme.kernel, SpringFaces { metered, own, other, metric, points: m, medium, springs, lift });
-            meter.phases.book_part(Part::Springs, start);
-        }
+        let (pull, turning) = (springs.as_ref().map(|own| own.pull), self.turning());
+        let faces = Faces {
+            metered,
+            own,
+            other: &other,
+            metric,
+            points: m,
+            turning,
+            medium,
+            lift: &mut nodes.lift,
+            held: &mut nodes.held,
+            springs: springs.as_mut().map(Springs::again),
+        };
+        flux.faces(scheme.kernel, faces);
         for face in 0..FACES {
             let met = meetings.filter(|_| built::CONTACT).map(|meetings| Met { meetings, traces });
             let sides = Sides { face, own: &own[face * length..][..length], other: &other[face], met };
@@ -209,7 +244,8 @@ impl Block<'_> {
                     let weight = line.basis.weights[point] * length * factor;
                     external.boundary.0[lane] += weight * boundary_power(&flux, normal);
                     if let (true, Some(balance)) = (built::BALANCE, &mut meter.balance) {
-                        balance.boundary.0[lane] += weight * boundary_loss(own, &flux, normal, lane);
+                        let stored = springs.as_ref().map_or(0.0, |springs| springs.stored);
+                        balance.boundary.0[lane] += weight * (boundary_loss(own, &flux, normal, lane) - stored);
                     }
                 }
             }
@@ -260,9 +296,9 @@ impl Block<'_> {
                 let when = Moment { times: self.stage.times, dt: self.factor() };
                 let condition = &self.scheme.boundaries[group];
                 let mut flux = |inside: &Trace<f64>| condition.flux(inside, &at, &when, memory);
-                Some(match (condition.gives_back(), springs) {
-                    (GivesBack::Nothing, _) | (_, None) => flux(&minus),
-                    (how, Some(springs)) => self.pulled_at_boundary([face, point, lane], how, &minus, springs, flux),
+                Some(match springs {
+                    None => flux(&minus),
+                    Some(springs) => self.pulled_at_boundary([face, point, lane], group, &at, &minus, springs, flux),
                 })
             }
             Neighbour::Interface(_, material) => {

@@ -3,7 +3,6 @@
 use super::block_work::WithFlux;
 use super::face_balance::FaceBalance;
 use super::flux::Faces;
-use super::spring_faces::SpringFaces;
 use crate::lane::Kernel;
 use crate::riemann::{Looks, Riemann};
 use crate::state::UNKNOWNS;
@@ -42,10 +41,8 @@ impl Flux {
 pub(super) trait BlockFlux: std::fmt::Debug + Send + Sync {
     /// See [`Riemann::LOOKS`].
     fn looks(&self) -> Looks;
-    /// The lifted fluxes of the four faces.
+    /// The lifted fluxes of the four faces, with what their springs do.
     fn faces(&self, kernel: Kernel, work: Faces);
-    /// The springs of the four faces, after their fluxes.
-    fn springs(&self, kernel: Kernel, work: SpringFaces);
     /// What a face adds to the balance of energy.
     fn face_balance(&self, kernel: Kernel, work: FaceBalance);
 }
@@ -56,10 +53,6 @@ impl<R: Riemann> BlockFlux for R {
     }
 
     fn faces(&self, kernel: Kernel, work: Faces) {
-        kernel.run(WithFlux(*self, work));
-    }
-
-    fn springs(&self, kernel: Kernel, work: SpringFaces) {
         kernel.run(WithFlux(*self, work));
     }
 

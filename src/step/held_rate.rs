@@ -12,17 +12,19 @@
 //! with R of the mean F of the cell. The corrector takes the faces as they are, and nothing of this rate.
 
 use super::block::Block;
+use super::lift::at_node;
+use super::springs::Held;
 use super::volume::row;
 use crate::boundary::GivesBack;
-use crate::lane::{F8, LANES, Lanes, Work, load_array, store_array};
+use crate::lane::{F8, Lanes, Work, load_array, store_array};
 use crate::mesh::FACES;
 use crate::operators::{BlockMetric, Line, MOST_FACE_POINTS, Neighbour, determinant, with_nodes};
 use crate::riemann::{creep, tangent};
 use crate::state::State;
 use crate::tensor::{AXES, DEFORMATION, dot};
 
-/// l k R a at the points of the faces, N/m.
-type Pulls = [[[F8; AXES]; MOST_FACE_POINTS]; FACES];
+/// l k R a at the points of the faces, N/m, [face][point][2] without gaps between the faces.
+type Pulls = [[F8; AXES]; FACES * MOST_FACE_POINTS];
 
 /// dp/dt at the nodes of a block by the springs of its faces.
 struct HeldRate<'a, const M: usize> {
@@ -34,9 +36,9 @@ struct HeldRate<'a, const M: usize> {
     creep: &'a [F8],
     /// What a cell takes of l k of a face, Pa.
     moduli: &'a [F8; FACES],
-    /// What pulls along walls in, of all springs out.
-    pulls: &'a mut Pulls,
-    /// N/m^3, [component][node]: rows of p; those of F are left.
+    /// What pulls along walls; none where the block has no wall.
+    walls: Option<&'a Pulls>,
+    /// N/m^3, [2][node].
     rate: &'a mut [F8],
 }
 
@@ -44,15 +46,22 @@ impl<const M: usize> Work for HeldRate<'_, M> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { line, metric, u, creep, moduli, pulls, rate } = self;
-        let (rotation, creep) = (mean_rotation::<L, M>(u), creep.as_chunks::<AXES>().0);
-        for face in 0..FACES {
+        let Self { line, metric, u, creep, moduli, walls, rate } = self;
+        let (rotation, creep) = (mean_rotation::<L, M>(u), &creep.as_chunks::<AXES>().0[..FACES * M]);
+        let mut pulls = [[[F8::ZERO; AXES]; M]; FACES];
+        for (face, pulls) in pulls.iter_mut().enumerate() {
             let modulus = L::load(&moduli[face]);
-            for point in 0..M {
+            for (point, pull) in pulls.iter_mut().enumerate() {
                 let a = creep::turned(rotation, load_array::<L, AXES>(&creep[face * M + point]));
-                let pull = &mut pulls[face][point];
-                let [one, two] = load_array::<L, AXES>(&pull[..]);
-                store_array([modulus.mul_add(a[0], one), modulus.mul_add(a[1], two)], pull);
+                store_array([modulus * a[0], modulus * a[1]], pull);
+            }
+        }
+        let pulls = pulls.as_flattened_mut();
+        if let Some(walls) = walls {
+            for (pull, wall) in pulls.iter_mut().zip(walls) {
+                for (pull, wall) in pull.iter_mut().zip(wall) {
+                    (L::load(pull) + L::load(wall)).store(pull);
+                }
             }
         }
         lift::<L, M>(line, metric, pulls, rate);
@@ -73,70 +82,49 @@ fn mean_rotation<L: Lanes, const M: usize>(u: &[F8]) -> [L; 2] {
 
 /// From the face points to the nodes, as [`super::lift::Lift`] does.
 #[inline(always)]
-fn lift<L: Lanes, const M: usize>(line: &Line, metric: BlockMetric, pulls: &Pulls, rate: &mut [F8]) {
+fn lift<L: Lanes, const M: usize>(line: &Line, metric: BlockMetric, pulls: &[[F8; AXES]], rate: &mut [F8]) {
     let ends = [row::<M>(&line.lift[0]), row::<M>(&line.lift[1])];
+    let (pulls, rate) = (&pulls[..FACES * M], &mut rate[..AXES * M * M]);
     for i in 0..M {
         for j in 0..M {
             let [one, two] = metric.at_node::<L>(line, i, j);
             let inverse = L::splat(1.0) / determinant(one, two);
             for k in 0..AXES {
-                let mut sum = L::splat(ends[0][i]) * L::load(&pulls[0][j][k]);
-                sum = L::splat(ends[1][i]).mul_add(L::load(&pulls[1][j][k]), sum);
-                sum = L::splat(ends[0][j]).mul_add(L::load(&pulls[2][i][k]), sum);
-                sum = L::splat(ends[1][j]).mul_add(L::load(&pulls[3][i][k]), sum);
-                (sum * inverse).store(&mut rate[(DEFORMATION + k) * M * M + i * M + j]);
+                (at_node::<L, AXES, M>(pulls, &ends, [i, j], k) * inverse).store(&mut rate[k * M * M + i * M + j]);
             }
         }
     }
 }
 
 impl Block<'_> {
-    /// dp/dt at the nodes by the springs of the faces, N/m^3, into the rows of p of `rate`, [component][node].
+    /// dp/dt at the nodes by the springs of the faces, N/m^3, into `rate`, [2][node].
     pub(super) fn held_rate(&self, state: &State, rate: &mut [F8]) {
         let (line, metric, u) = (&self.scheme.operators.line, self.metric(), self.unknowns(state));
         let creep = self.scheme.creep_of(state, self.number);
-        let own = self.spring_between(self.material());
-        let moduli = &[0, 1, 2, 3].map(|face| self.held_modulus(face, own));
-        let pulls = &mut [[[F8::ZERO; AXES]; MOST_FACE_POINTS]; FACES];
-        self.pull_along_walls(creep, pulls);
-        with_nodes!(line.m, M => self.scheme.kernel.run(HeldRate::<'_, M> { line, metric, u, creep, moduli, pulls, rate }));
-    }
-
-    /// What a cell takes of l k of a face, Pa: half of `own` between two cells of one law, all of it at a side that gives back all; walls are
-    /// in [`Block::pull_along_walls`].
-    fn held_modulus(&self, face: usize, own: f64) -> F8 {
-        let (scheme, law, mut out) = (self.scheme, self.material(), F8::ZERO);
-        for (lane, neighbour) in scheme.operators.blocks.neighbours[self.number][face].iter().enumerate() {
-            out.0[lane] = match neighbour {
-                Neighbour::Cell(_) => 0.5 * own,
-                Neighbour::Interface(_, there) => 0.5 * self.spring_between(*there),
-                Neighbour::Boundary(group) if scheme.boundaries[*group].gives_back() == GivesBack::All => {
-                    scheme.spring_at(*group, law)
-                }
-                Neighbour::Boundary(_) | Neighbour::Padding => 0.0,
-            };
-        }
-        out
+        let Held { moduli, has_walls } = self.scheme.held_of(self.number);
+        let walls = has_walls.then(|| self.pull_along_walls(creep));
+        let walls = walls.as_ref();
+        with_nodes!(line.m, M => self.scheme.kernel.run(HeldRate::<'_, M> { line, metric, u, creep, moduli, walls, rate }));
     }
 
     /// The faces that give back along themselves alone, with half of a spring.
-    fn pull_along_walls(&self, creep: &[F8], pulls: &mut Pulls) {
-        let m = self.scheme.operators.line.m;
-        for (face, pulls) in pulls.iter_mut().enumerate() {
-            for lane in 0..LANES {
-                let neighbour = &self.scheme.operators.blocks.neighbours[self.number][face][lane];
+    fn pull_along_walls(&self, creep: &[F8]) -> Pulls {
+        let (m, scheme, mut out) = (self.scheme.operators.line.m, self.scheme, [[F8::ZERO; AXES]; _]);
+        for (face, neighbours) in scheme.operators.blocks.neighbours[self.number].iter().enumerate() {
+            for (lane, neighbour) in neighbours.iter().enumerate() {
                 let Neighbour::Boundary(group) = neighbour else { continue };
-                if self.scheme.boundaries[*group].gives_back() != GivesBack::Along {
+                if scheme.gives_back(*group) != GivesBack::Along {
                     continue;
                 }
-                let modulus = 0.5 * self.scheme.spring_at(*group, self.material());
-                for (point, pull) in pulls.iter_mut().enumerate().take(m) {
-                    let along = tangent(self.metric().at_face_of(lane, face, point).0);
-                    let a = [0, 1].map(|k| creep[AXES * (face * m + point) + k].0[lane]);
+                let modulus = 0.5 * scheme.spring_at(*group, self.material());
+                for (at, pull) in out.iter_mut().enumerate().take(m * (face + 1)).skip(m * face) {
+                    let along = tangent(self.metric().at_face_of(lane, face, at - m * face).0);
+                    let a = [0, 1].map(|k| creep[AXES * at + k].0[lane]);
                     let size = modulus * dot(a, along);
                     (0..AXES).for_each(|k| pull[k].0[lane] = size * along[k]);
                 }
             }
         }
+        out
     }
 }

@@ -9,7 +9,7 @@ use crate::tensor::{AXES, DEFORMATION};
 
 /// The sum over the faces of what is lifted to node (i, j), number k of W.
 #[inline(always)]
-fn at_node<L: Lanes, const W: usize, const M: usize>(
+pub(super) fn at_node<L: Lanes, const W: usize, const M: usize>(
     lift: &[[F8; W]],
     ends: &[[f64; M]; 2],
     [i, j]: [usize; 2],

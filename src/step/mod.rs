@@ -57,7 +57,6 @@ mod shape;
 mod shared;
 mod shares;
 mod sources;
-mod spring_faces;
 mod springs;
 mod stage;
 mod sums;

@@ -60,7 +60,8 @@ pub enum Part {
     CellBalance,
     /// Bodies that keep their angular momentum: with the corrections.
     AngularMomentum,
-    /// Springs in the faces between cells: in the flux and, of ADER, before the predictor. Those at boundaries and between materials are with the conditions.
+    /// What springs in the faces give the predictor of ADER. In the flux they have no clock of their own; at boundaries and between materials
+    /// they are with the conditions.
     Springs,
 }
 

@@ -102,7 +102,7 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
         let (before, now) = rates.split_at_mut(stage.number * stride);
         let is_last = stage.number + 1 == stages.len();
         if let (true, Some(later)) = (far && is_last, tile.plan.after(number, AHEAD)) {
-            out.ask_for(later - out.first, stride);
+            out.ask_for(later - out.first, [stride, scheme.creep_of_block()]);
         }
         let later = tile.plan.after(number, 1);
         if let (true, Some(later), Some(curl_free)) = (is_last, later, &scheme.operators.curl_free) {
@@ -187,7 +187,8 @@ struct Out<'a> {
 impl<'a> Out<'a> {
     /// Asks for what will be written of a block. (A store to a line that is not there waits as a load does.)
     #[inline]
-    fn ask_for(&self, block: usize, stride: usize) {
+    fn ask_for(&self, block: usize, [stride, creep]: [usize; 2]) {
+        lane::prefetch(self.creep.get(creep * block..creep * (block + 1)).unwrap_or_default());
         if let Some(u) = self.u.get(stride * block..stride * (block + 1)) {
             lane::prefetch(u);
             lane::prefetch(std::slice::from_ref(&self.speed[block].fastest));
@@ -355,6 +356,9 @@ impl Scheme {
     fn ask_for(&self, state: &State, block: usize) {
         lane::prefetch(state.of_block(block, self.operators.nodes()));
         lane::prefetch(&self.operators.geometry.blocks[block..=block]);
+        if !state.creep.is_empty() {
+            lane::prefetch(self.creep_of(state, block));
+        }
     }
 
     /// Asks for what else they will read: a line or two of each.

@@ -52,8 +52,8 @@ pub struct Scheme {
     /// rho0 c_p^2 of the laws at F = 1, Pa, where the flux has springs in the faces ([`crate::riemann::hold`],
     /// [`crate::riemann::creep`]); empty where it has none.
     pub(super) moduli: Vec<f64>,
-    /// Whether faces give back what they creep.
-    pub(super) gives_back: bool,
+    /// How stiff the springs are by which faces give back what they creep; empty where they have none.
+    pub(super) stiffness: super::springs::Stiffness,
     /// Condition of each boundary group of the mesh.
     pub boundaries: Vec<Arc<dyn Boundary>>,
     /// The faces that interact across gaps; none where no condition pairs any.
@@ -133,7 +133,7 @@ impl Scheme {
             method,
             flux,
             moduli,
-            gives_back: false,
+            stiffness: super::springs::Stiffness::default(),
             boundaries,
             contacts: None,
             sources,
@@ -214,7 +214,7 @@ impl Scheme {
         let new =
             new.with_sources(sources).with_corrections(corrections).with_rescue(self.rescue).with_kernel(self.kernel);
         let new = Self { exchange: self.exchange.clone(), scene: self.scene.clone(), ..new.with_pairings(pairings)? };
-        let new = Self { gives_back: self.gives_back, ..new };
+        let new = if self.has_springs() { new.with_stiffness() } else { new };
         let new = if self.keeps_angular_momentum() { new.keeping_angular_momentum()? } else { new };
         match self.curl {
             Some(control) => new.with_curl(control),

@@ -6,16 +6,89 @@ use crate::boundary::GivesBack;
 use crate::error::{Error, Result};
 use crate::lane::{F8, LANES};
 use crate::mesh::FACES;
-use crate::operators::Neighbour;
+use crate::operators::{Blocks, Neighbour};
 use crate::riemann::{Looks, creep};
 use crate::state::State;
 use crate::tensor::AXES;
+use std::collections::HashMap;
 
 /// rho0 c_p^2 at F = 1 by law, Pa; empty where the flux has no springs.
 pub(super) fn moduli(laws: &[Law], flux: &Flux) -> Vec<f64> {
     let modulus = |law: &Law| law.density() * law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0].powi(2);
     let has_springs = flux.looks() == Looks::Displacement;
     if has_springs { laws.iter().map(modulus).collect() } else { vec![] }
+}
+
+/// How stiff the springs of the faces are, by law and by boundary group, found once: laws and conditions are dynamic calls away. Empty
+/// where faces have none.
+#[derive(Debug, Default)]
+pub(super) struct Stiffness {
+    /// beta M between two laws, Pa, [law][law].
+    between: Vec<f64>,
+    /// k l at a boundary, Pa, [law][group].
+    at_edges: Vec<f64>,
+    /// How the faces of a group give back what they creep.
+    how: Vec<GivesBack>,
+    /// Number of laws.
+    laws: usize,
+    /// The entry of `held` of each block: most blocks of a body share one, which stays in the first cache.
+    entry: Vec<u32>,
+    held: Vec<Held>,
+}
+
+/// What the predictor asks of the springs of a block.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Held {
+    /// What a cell takes of l k of a face, Pa: half of it between two cells, all of it at a side that gives back all.
+    pub moduli: [F8; FACES],
+    /// Whether a face gives back along itself alone, with half of a spring: these are not in `moduli`.
+    pub has_walls: bool,
+}
+
+impl Stiffness {
+    /// Of a scheme whose faces give back what they creep.
+    fn new(scheme: &Scheme) -> Self {
+        let laws = scheme.laws.len();
+        let how: Vec<_> = scheme.boundaries.iter().map(|condition| condition.gives_back()).collect();
+        let between = (0..laws * laws).map(|pair| scheme.find_between([pair / laws, pair % laws])).collect();
+        let at_edge = |law| how.iter().map(move |how| scheme.find_at_edge(*how, law));
+        let at_edges = (0..laws).flat_map(at_edge).collect();
+        let mut new = Self { between, at_edges, how, laws, ..Self::default() };
+        let mut entries = HashMap::new();
+        for block in 0..scheme.operators.blocks.len() {
+            let held = new.held(&scheme.operators.blocks, block);
+            let bits = held.moduli.map(|modulus| modulus.0.map(f64::to_bits));
+            let entry = *entries.entry((bits, held.has_walls)).or_insert_with(|| {
+                new.held.push(held);
+                new.held.len() - 1
+            });
+            new.entry.push(entry as u32);
+        }
+        new
+    }
+
+    fn between(&self, [law, other]: [usize; 2]) -> f64 {
+        self.between.get(law * self.laws + other).copied().unwrap_or(0.0)
+    }
+
+    fn at_edge(&self, group: usize, law: usize) -> f64 {
+        self.at_edges.get(law * self.how.len() + group).copied().unwrap_or(0.0)
+    }
+
+    fn held(&self, blocks: &Blocks, block: usize) -> Held {
+        let (law, mut has_walls) = (blocks.material[block], false);
+        let mut modulus = |neighbour: &Neighbour| match neighbour {
+            Neighbour::Cell(_) => 0.5 * self.between([law; 2]),
+            Neighbour::Interface(_, there) => 0.5 * self.between([law, *there]),
+            Neighbour::Boundary(group) => {
+                has_walls |= self.how[*group] == GivesBack::Along;
+                if self.how[*group] == GivesBack::All { self.at_edge(*group, law) } else { 0.0 }
+            }
+            Neighbour::Padding => 0.0,
+        };
+        let moduli = std::array::from_fn(|face| F8(blocks.neighbours[block][face].each_ref().map(&mut modulus)));
+        Held { moduli, has_walls }
+    }
 }
 
 /// What a face of a cell has at its other side.
@@ -40,12 +113,24 @@ impl Scheme {
                 "a law with internal variables has no springs in its faces: where it flows they would make energy";
             return Err(Error::input(what, "remove `springs` of [scheme], or give a part of the body another law"));
         }
-        Ok(Self { gives_back: true, ..self })
+        Ok(self.with_stiffness())
+    }
+
+    /// With springs whose stiffness is that of its laws and conditions.
+    pub(super) fn with_stiffness(self) -> Self {
+        let stiffness = Stiffness::new(&self);
+        Self { stiffness, ..self }
     }
 
     /// Whether springs give back what faces creep.
     pub fn has_springs(&self) -> bool {
-        self.gives_back
+        self.stiffness.laws > 0
+    }
+
+    /// How the faces of a boundary group give back what they creep, where the scheme has springs.
+    #[inline]
+    pub(super) fn gives_back(&self, group: usize) -> GivesBack {
+        self.stiffness.how[group]
     }
 
     /// How many cells have springs in their faces.
@@ -60,11 +145,29 @@ impl Scheme {
         (0..self.moduli.len()).any(|law| self.spring_between([law; 2]) > 0.0)
     }
 
+    /// k l at a boundary group, Pa.
+    #[inline]
+    pub(crate) fn spring_at(&self, group: usize, law: usize) -> f64 {
+        self.stiffness.at_edge(group, law)
+    }
+
+    /// beta M = k l of a face between two laws, Pa.
+    #[inline]
+    pub(crate) fn spring_between(&self, laws: [usize; 2]) -> f64 {
+        self.stiffness.between(laws)
+    }
+
+    /// What the predictor asks of the springs of a block, where the scheme has springs.
+    #[inline]
+    pub(super) fn held_of(&self, block: usize) -> &Held {
+        &self.stiffness.held[self.stiffness.entry[block] as usize]
+    }
+
     /// k l at a boundary whose faces give back what they creep, Pa. The shear of a free side creeps at 1/(rho0 c_s): k is so much less that
     /// its relaxation is no faster than inside, at any c_p/c_s.
-    pub(crate) fn spring_at(&self, group: usize, law: usize) -> f64 {
-        let inside = self.spring_between([law; 2]);
-        match self.boundaries[group].gives_back() {
+    fn find_at_edge(&self, how: GivesBack, law: usize) -> f64 {
+        let inside = self.find_between([law; 2]);
+        match how {
             GivesBack::Nothing => 0.0,
             GivesBack::Along => inside,
             GivesBack::All if inside > 0.0 => inside * (self.laws[law].shear_modulus() / self.moduli[law]).sqrt(),
@@ -72,10 +175,10 @@ impl Scheme {
         }
     }
 
-    /// beta M = k l of a face between two laws, Pa; 0 where one of them has memory, see [`creep::spring`].
-    pub(crate) fn spring_between(&self, laws: [usize; 2]) -> f64 {
+    /// beta M of a face between two laws, Pa; 0 where one of them has memory, see [`creep::spring`].
+    fn find_between(&self, laws: [usize; 2]) -> f64 {
         let flows = laws.iter().any(|law| self.laws[*law].has_memory());
-        if flows || !self.gives_back { 0.0 } else { creep::spring(self.operators.degree) * self.modulus_between(laws) }
+        if flows { 0.0 } else { creep::spring(self.operators.degree) * self.modulus_between(laws) }
     }
 
     /// M of a face between two laws, Pa.
@@ -170,7 +273,7 @@ impl Scheme {
             }
             for (lane, neighbour) in neighbours.iter().enumerate() {
                 let modulus = match neighbour {
-                    Neighbour::Boundary(group) => match self.boundaries[*group].gives_back() {
+                    Neighbour::Boundary(group) => match self.gives_back(*group) {
                         GivesBack::Along => 0.5 * own,
                         _ => self.spring_at(*group, law),
                     },

@@ -6,6 +6,7 @@
 
 mod rates;
 pub mod transfer;
+mod turn;
 
 use super::history::recall;
 use super::sweeps::Sweep;
@@ -17,13 +18,14 @@ use crate::state::UNKNOWNS;
 use crate::tensor::{AXES, DEFORMATION};
 use rates::Rates;
 use transfer::{ToNodes, ToPoints};
+use turn::{Plain, Turn, Turned};
 
 /// Arrays of one block at its points; [point][field] each, those of time nodes with the node outermost.
 #[derive(Default)]
 pub struct Arrays {
     /// U_p^n.
     pub start: Vec<F8>,
-    /// U_p^n and what sources and springs add until a time node, [p][6]; empty without any.
+    /// p of U_p^n and what sources and springs add until a time node, [p][6], the rows of F being left; empty without any.
     shifted: Vec<F8>,
     /// r_k,p of the sweep before and of this one, [k][p][6].
     pub rates: [Vec<F8>; 2],
@@ -31,9 +33,9 @@ pub struct Arrays {
     q: Vec<F8>,
     /// Sources b at points and time nodes, [k][p][2]; empty without sources.
     pub source: Vec<F8>,
-    /// dp/dt by the springs of the faces ([`super::held_rate`]) at the nodes, [6][a], the rows of F being 0; empty without springs.
+    /// dp/dt by the springs of the faces ([`super::held_rate`]) at the nodes, [2][a]; empty without springs.
     pub held_at_nodes: Vec<F8>,
-    /// The same at the points, [p][6].
+    /// The same at the points, [p][2].
     pub held: Vec<F8>,
     /// Time averages of F and v, [p][6].
     pub mean: Vec<F8>,
@@ -68,8 +70,8 @@ impl Arrays {
             rates: [zeros(UNKNOWNS * sweeps.widest()), zeros(UNKNOWNS * sweeps.widest())],
             q: zeros(UNKNOWNS),
             source: zeros_if(added.sources, AXES * time.len()),
-            held_at_nodes: if added.springs { vec![F8::ZERO; UNKNOWNS * m * m] } else { vec![] },
-            held: zeros_if(added.springs, UNKNOWNS),
+            held_at_nodes: if added.springs { vec![F8::ZERO; AXES * m * m] } else { vec![] },
+            held: zeros_if(added.springs, AXES),
             mean: zeros(UNKNOWNS),
             mean_stress: zeros(DEFORMATION),
             between: vec![F8::ZERO; transfer::factors(m, points, UNKNOWNS)],
@@ -104,6 +106,9 @@ pub struct Predictor<'a, M, C> {
 /// What evaluates the sources anew before a sweep.
 pub type Renew<'a> = &'a dyn Fn(&Sweep, &mut Arrays);
 
+/// U_p from which a time node begins: F of the first, p of the second, [p][6] both.
+type Base<'a> = [&'a [F8]; 2];
+
 /// dt times a row of a sweep's matrix; at most 7 time nodes.
 type Row = [f64; 8];
 
@@ -115,13 +120,13 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         // One metric for all points turns P to the axes of the cell before it is differentiated: fewer products.
         let constant = (self.metric.len() == DEFORMATION).then(|| load_array::<L, DEFORMATION>(self.metric));
         let mut row = Row::default();
-        self.begin_shift(arrays);
         for sweep in &self.sweeps.inner {
             self.renew(sweep, arrays);
             for s in 0..sweep.to {
                 self.shift::<L>(arrays, &sweep.sources[s * times..(s + 1) * times]);
                 let Arrays { start, shifted, rates: [before, _], q, .. } = arrays;
-                let base = if shifted.is_empty() { &start[..UNKNOWNS * np] } else { &shifted[..UNKNOWNS * np] };
+                let (start, momenta) = (&start[..UNKNOWNS * np], if shifted.is_empty() { &*start } else { &*shifted });
+                let base = [start, &momenta[..UNKNOWNS * np]];
                 self.row(&sweep.rates[s * sweep.from..(s + 1) * sweep.from], &mut row);
                 let (rows, dt) = (&row[..sweep.from], sweep.tau[s] * self.dt);
                 match constant {
@@ -180,16 +185,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
     }
 
-    /// U^n, to which sources and springs add, where there are any. They add to p alone.
-    #[inline(always)]
-    fn begin_shift(&self, arrays: &mut Arrays) {
-        if !arrays.shifted.is_empty() {
-            let count = UNKNOWNS * self.matrices.points();
-            arrays.shifted[..count].copy_from_slice(&arrays.start[..count]);
-        }
-    }
-
-    /// p^n + dt sum_k B[k] (rho0 b_k + dp/dt of the springs), where there are sources or springs.
+    /// p^n + dt sum_k B[k] (rho0 b_k + dp/dt of the springs), where there are sources or springs. They add to p alone: rows of F are left.
     #[inline(always)]
     fn shift<L: Lanes>(&self, arrays: &mut Arrays, row: &[f64]) {
         if arrays.shifted.is_empty() {
@@ -206,7 +202,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
             for k in DEFORMATION..UNKNOWNS {
                 let mut u = L::load(&start[p][k]);
                 if !arrays.held.is_empty() {
-                    u = factor.mul_add(L::load(&arrays.held[UNKNOWNS * p + k]), u);
+                    u = factor.mul_add(L::load(&arrays.held[AXES * p + k - DEFORMATION]), u);
                 }
                 u.store(&mut shifted[p][k]);
             }
@@ -226,21 +222,22 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         }
     }
 
-    /// u = U^n + dt sum_k W[k] r_k at one time node, `dt` after t_n, and Q of it. F and the law first, then v: together they would need
-    /// more registers than there are.
+    /// u = U^n + dt sum_k W[k] r_k at one time node, `dt` after t_n, and Q of it, from `base`: F^n of the first, p of the second. F and the
+    /// law first, then v: together they would need more registers than there are.
     #[inline(always)]
-    fn sample<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], dt: f64, turn: impl Turn<L>, q: &mut [F8]) {
+    fn sample<L: Lanes>(&self, base: Base, before: &[F8], row: &[f64], dt: f64, turn: impl Turn<L>, q: &mut [F8]) {
         // Four points of the first sweep, as at degree 1, by themselves: all loops are unrolled.
-        match (base.len(), row) {
-            (24, []) => self.sample_of::<L>(&base[..24], before, &[], dt, turn, q),
+        match (base[0].len(), row) {
+            (24, []) => self.sample_of::<L>([&base[0][..24], &base[1][..24]], before, &[], dt, turn, q),
             _ => self.sample_of::<L>(base, before, row, dt, turn, q),
         }
     }
 
     /// [`Predictor::sample`] for lengths that may be constants.
     #[inline(always)]
-    fn sample_of<L: Lanes>(&self, base: &[F8], before: &[F8], row: &[f64], dt: f64, turn: impl Turn<L>, q: &mut [F8]) {
-        let (base, before) = (base.as_chunks::<UNKNOWNS>().0, before.as_chunks::<UNKNOWNS>().0);
+    fn sample_of<L: Lanes>(&self, base: Base, before: &[F8], row: &[f64], dt: f64, turn: impl Turn<L>, q: &mut [F8]) {
+        let [base, momenta] = [base[0].as_chunks::<UNKNOWNS>().0, base[1].as_chunks::<UNKNOWNS>().0];
+        let (momenta, before) = (&momenta[..base.len()], before.as_chunks::<UNKNOWNS>().0);
         let q = &mut q.as_chunks_mut::<UNKNOWNS>().0[..base.len()];
         let twins = if count::<M>() == 0 { base.len() / 2 * 2 } else { 0 };
         let (pairs, rest) = q.split_at_mut(twins);
@@ -262,7 +259,7 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
         let q = &mut q[..base.len()];
         let inverse_density = L::splat(1.0 / self.law.density());
         for (p, q) in q.iter_mut().enumerate() {
-            let momentum = state::<L, DEFORMATION, AXES>(base, before, row, p);
+            let momentum = state::<L, DEFORMATION, AXES>(momenta, before, row, p);
             (momentum[0] * inverse_density).store(&mut q[2]);
             (momentum[1] * inverse_density).store(&mut q[3]);
         }
@@ -285,7 +282,9 @@ impl<M: Material, C: Coefficient> Predictor<'_, M, C> {
             self.row(&last.rates[s * from..(s + 1) * from], row);
         }
         for (p, mean) in mean.as_chunks_mut::<UNKNOWNS>().0[..np].iter_mut().enumerate() {
-            let u = state::<L, 0, UNKNOWNS>(base, before, &mean_row[..from], p);
+            let mut u = load_array::<L, UNKNOWNS>(&start[p]);
+            (u[4], u[5]) = (L::load(&base[p][4]), L::load(&base[p][5]));
+            let u = grown::<L, 0, UNKNOWNS>(u, before, &mean_row[..from], (p, np));
             store_array([u[0], u[1], u[2], u[3], u[4] * inverse_density, u[5] * inverse_density], mean);
         }
         // Two points at a time as in `sample`. Sources do not act on F: from U^n itself.
@@ -345,9 +344,19 @@ fn state<L: Lanes, const FIRST: usize, const K: usize>(
     row: &[f64],
     p: usize,
 ) -> [L; K] {
-    let mut u = load_array::<L, K>(&base[p][FIRST..]);
+    grown::<L, FIRST, K>(load_array(&base[p][FIRST..]), before, row, (p, base.len()))
+}
+
+/// u + sum_k row[k] r_k at a point of `count`, fields as in [`state`].
+#[inline(always)]
+fn grown<L: Lanes, const FIRST: usize, const K: usize>(
+    mut u: [L; K],
+    before: &[[F8; UNKNOWNS]],
+    row: &[f64],
+    (p, count): (usize, usize),
+) -> [L; K] {
     for (k, factor) in row.iter().enumerate() {
-        let (factor, rate) = (L::splat(*factor), &before[k * base.len() + p]);
+        let (factor, rate) = (L::splat(*factor), &before[k * count + p]);
         for i in 0..K {
             u[i] = factor.mul_add(L::load(&rate[FIRST + i]), u[i]);
         }
@@ -362,38 +371,4 @@ fn put<L: Lanes>(stress: [L; 4], q: &mut [F8; UNKNOWNS]) {
     stress[1].store(&mut q[1]);
     stress[2].store(&mut q[4]);
     stress[3].store(&mut q[5]);
-}
-
-/// From P to what is differentiated along xi1 (first two) and xi2.
-trait Turn<L>: Copy {
-    /// [along xi1 of row 1, of row 2, along xi2 of row 1, of row 2].
-    fn apply(self, stress: [L; 4]) -> [L; 4];
-}
-
-/// dxi_b/dX_a P_ia, with the same metric [b][a] at all points.
-#[derive(Clone, Copy)]
-struct Turned<L>([L; 4]);
-
-impl<L: Lanes> Turn<L> for Turned<L> {
-    #[inline(always)]
-    fn apply(self, p: [L; 4]) -> [L; 4] {
-        let m = self.0;
-        [
-            m[0].mul_add(p[0], m[1] * p[1]),
-            m[0].mul_add(p[2], m[1] * p[3]),
-            m[2].mul_add(p[0], m[3] * p[1]),
-            m[2].mul_add(p[2], m[3] * p[3]),
-        ]
-    }
-}
-
-/// P_i1, P_i2.
-#[derive(Clone, Copy)]
-struct Plain;
-
-impl<L: Lanes> Turn<L> for Plain {
-    #[inline(always)]
-    fn apply(self, p: [L; 4]) -> [L; 4] {
-        [p[0], p[2], p[1], p[3]]
-    }
 }
