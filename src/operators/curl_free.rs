@@ -288,8 +288,8 @@ fn mass(corners: &CellMap, line: &Line, a: usize) -> f64 {
 /// Columns [direction][node]: gradients in X of the monomials of Q_N in xi and of P_(N+1) in (X - Xc)/h.
 ///
 /// In a curved cell the monomials beyond degree 1 are taken of the place that xi has in the cell of the same corners with straight
-/// edges. Of X itself they would span nearly all fields (N = 3: 27 of 32), and nothing would be left to control: at diag(.7, 1) a ring
-/// grew by 5.6 c/h for 1.5 with straight edges.
+/// edges. Of X itself they would span nearly all fields (N = 3: 27 of 32), and little would be left to control: a periodic square of
+/// curved cells at diag(.9, .9) grew by 2.4e-3 c/h at N = 3 and by 1.6e-4 at N = 2; so it does not grow.
 fn gradients(cell: &CellMap, line: &Line) -> Vec<Vec<f64>> {
     let (m, centre, h) = (line.m as i32, map::position(cell, [0.5, 0.5]), map::h_e(cell));
     let nodes = line.nodes();

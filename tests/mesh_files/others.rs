@@ -127,7 +127,7 @@ fn what_is_no_mesh_of_plane_quadrilaterals_is_named_by_its_cell() {
         ("0 1 4 3 1 2 5", "9 5", "4 7", "1 cell(s) are triangles, the first is cell 1 (from 0)"),
         ("0 1 4 3 1 2 5", "9 7", "4 7", "1 cell(s) are triangles, the first is cell 1 (from 0)"),
         ("0 1 2 3 4 5 6 0", "12", "8", "1 cell(s) are hexahedra"),
-        ("0 1 2 4 3 5", "30", "6", "1 cell(s) are quadrilaterals of order 2 (8 nodes)"),
+        ("0 1 2 4 3 5", "30", "6", "1 cell(s) are quadrilaterals of order 2 (with neither 8 nor 9 nodes)"),
         ("0 1 2 3 4 5 6 0 1 2 3 4 5 6 0 1", "70", "16", "quadrilaterals of order 3 (16 nodes)"),
         ("0 1 4 3", "99", "4", "cell 0 (from 0) is of the VTK type 99, which is not known"),
         ("0 1 4 3", "3", "4", "no grid of it has points and quadrilaterals"),

@@ -29,11 +29,14 @@ pub const LINE_3: i32 = 8;
 pub const QUAD_9: i32 = 10;
 /// A quadrilateral of order 2 of 8 nodes: without the last.
 pub const QUAD_8: i32 = 16;
+/// A cell of another program that says to be a quadrilateral of order 2 and has another number of nodes; Gmsh has no number for it.
+pub const OTHER_QUAD: i32 = -1;
 /// A point.
 pub const POINT: i32 = 15;
 
 /// The types of the reference manual that Gmsh's mesher makes, up to order 5.
-const KINDS: [Kind; 36] = [
+const KINDS: [Kind; 37] = [
+    kind(OTHER_QUAD, "quadrilaterals of order 2 (with neither 8 nor 9 nodes)", 2, 2, 0),
     kind(LINE, "lines", 1, 1, 2),
     kind(2, "triangles", 2, 1, 3),
     kind(QUAD, "quadrilaterals", 2, 1, 4),

@@ -23,7 +23,7 @@ use crate::mesh::map::Bulge;
 
 pub(in crate::io) use assemble::mesh as assemble;
 pub use error::{At, Error};
-pub use kinds::{Kind, LINE, LINE_3, POINT, QUAD, QUAD_8, QUAD_9};
+pub use kinds::{Kind, LINE, LINE_3, OTHER_QUAD, POINT, QUAD, QUAD_9};
 pub use write::{to_text, write};
 
 /// Reads a mesh from an MSH file.

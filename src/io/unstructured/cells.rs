@@ -1,6 +1,6 @@
 //! Cells of the files of other programs, by the kinds of VTK and XDMF.
 
-use crate::io::gmsh::{LINE, LINE_3, POINT, QUAD, QUAD_9};
+use crate::io::gmsh::{LINE, LINE_3, OTHER_QUAD, POINT, QUAD, QUAD_9};
 use std::collections::BTreeMap;
 
 /// What is to be done with the nodes of a cell.
@@ -76,7 +76,7 @@ impl Shape {
             Shape::Line => LINE,
             Shape::Quad | Shape::Pixel => QUAD,
             Shape::Polygon => TRIANGLE,
-            Shape::Quadratic => QUAD_9,
+            Shape::Quadratic => OTHER_QUAD,
             Shape::Line3 => LINE_3,
             // Those of order 3 to 5 have 16, 25, 36 nodes.
             Shape::Lagrange => match nodes {
@@ -91,8 +91,6 @@ impl Shape {
 }
 
 const TRIANGLE: i32 = 2;
-/// A quadrilateral with two curved edges, of which nothing more is known.
-const QUAD_6: i32 = 16;
 
 /// The shape of a cell by its type in VTK.
 pub fn of_vtk(kind: u64) -> Option<Shape> {
@@ -111,7 +109,7 @@ pub fn of_vtk(kind: u64) -> Option<Shape> {
         35 | 60 | 68 => Shape::Other(LINE_3),
         22 | 34 | 61 | 69 => Shape::Other(9),
         23 | 28 => Shape::Quadratic,
-        30 => Shape::Other(QUAD_6),
+        30 => Shape::Other(OTHER_QUAD),
         24 | 71 => Shape::Other(11),
         25 | 33 => Shape::Other(17),
         26 | 31 | 32 => Shape::Other(18),
