@@ -33,7 +33,13 @@ pub fn run(scene: &SceneArgs, files: &Files, operators: Option<&Path>, run: &Run
         write_input(&problem, files, &folder, certificates)
     };
     // All ranks drop them before the run.
-    let begin = |all| if problem.writes() { begin(all) } else { Ok(drop(all)) };
+    let begin = |all| match problem.writes() {
+        true => begin(all),
+        false => {
+            drop(all);
+            Ok(())
+        }
+    };
     problem.agree(begin(certificates))?;
     solve(problem, &folder)
 }

@@ -89,9 +89,10 @@ pub fn of_mesh(mesh: &Mesh) -> String {
 /// corners of each cell with the name of its group, and the ends of each edge of a group with that. Two files hold the same mesh where
 /// it is the same.
 pub fn of_places(mesh: &Mesh) -> String {
+    type Place = [u64; 2];
     // -0.0 and 0.0 are one place; bits of numbers below 0 are sorted among themselves, which is an order too.
     let place = |node: usize| mesh.nodes[node].map(|x| (x + 0.0).to_bits());
-    let mut cells: Vec<([[u64; 2]; 4], Vec<[u64; 2]>, &str)> = (0..mesh.cells.len())
+    let mut cells: Vec<([Place; 4], Vec<Place>, &str)> = (0..mesh.cells.len())
         .map(|cell| {
             let mut corners = mesh.cells[cell].map(place);
             let first = (0..4).min_by_key(|&k| corners[k]).unwrap_or(0);

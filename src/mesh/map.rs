@@ -259,7 +259,7 @@ pub fn cofactors(cell: &impl Map, xi: [f64; 2]) -> [[f64; 2]; 2] {
 pub fn outward(cell: &impl Map, face: usize, s: f64) -> ([f64; 2], f64) {
     let end = (face % 2) as f64;
     let xi = if face < 2 { [end, s] } else { [s, end] };
-    let [a, b] = cofactors(cell, xi)[face / 2].map(|n| if face % 2 == 0 { -n } else { n });
+    let [a, b] = cofactors(cell, xi)[face / 2].map(|n| if face.is_multiple_of(2) { -n } else { n });
     let length = a.hypot(b);
     ([a / length, b / length], length)
 }

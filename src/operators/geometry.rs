@@ -285,7 +285,7 @@ impl Geometry {
             along2: [0, 1].map(|k| number(&|x| x[3][k] - x[0][k])),
             twist: [0, 1].map(|k| number(&|x| (x[0][k] - x[1][k]) + (x[2][k] - x[3][k]))),
             inverse_length: [F8::ZERO; FACES],
-            h: F8(cells.each_ref().map(|cell| map::h_e(cell))),
+            h: F8(cells.each_ref().map(map::h_e)),
         };
         for lane in 0..LANES {
             let one = metric.lane(lane);

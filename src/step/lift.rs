@@ -44,9 +44,9 @@ impl<const M: usize, G: NodeMetric> Work for Lift<'_, M, G> {
         let lift = &self.lift.as_chunks::<UNKNOWNS>().0[..FACES * M];
         let cofactors = self.metric.cofactors::<L, M>(self.line);
         let mut inverse = [[L::zero(); M]; M];
-        for i in 0..M {
-            for j in 0..M {
-                inverse[i][j] = L::splat(1.0) / determinant(cofactors.one(i, j), cofactors.two(i, j));
+        for (i, inverse) in inverse.iter_mut().enumerate() {
+            for (j, inverse) in inverse.iter_mut().enumerate() {
+                *inverse = L::splat(1.0) / determinant(cofactors.one(i, j), cofactors.two(i, j));
             }
         }
         for (k, rate) in self.rate.chunks_exact_mut(n).enumerate().take(UNKNOWNS) {

@@ -10,14 +10,14 @@ use crate::state::State;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(super) enum Shown {
     #[default]
-    ToNobody,
-    ToFirst,
-    ToAll,
+    Nobody,
+    First,
+    All,
 }
 
 impl Shown {
     fn of(on_all: bool) -> Self {
-        if on_all { Self::ToAll } else { Self::ToFirst }
+        if on_all { Self::All } else { Self::First }
     }
 }
 

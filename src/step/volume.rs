@@ -240,13 +240,11 @@ impl<const M: usize, const METERED: bool> Work for Traces<'_, M, METERED> {
     type Out = ();
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
-        let normals = self.metric.normals::<L>();
-        for face in 0..2 {
-            self.of_face::<L, true>(face, normals[face]);
-        }
-        for face in 2..FACES {
-            self.of_face::<L, false>(face, normals[face]);
-        }
+        let [left, right, below, above] = self.metric.normals::<L>();
+        self.of_face::<L, true>(0, left);
+        self.of_face::<L, true>(1, right);
+        self.of_face::<L, false>(2, below);
+        self.of_face::<L, false>(3, above);
     }
 }
 

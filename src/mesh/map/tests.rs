@@ -88,8 +88,8 @@ fn the_area_of_a_curved_cell_is_that_of_its_determinant_and_its_hull_holds_it() 
     let of = |axis: usize, pick: fn(f64, f64) -> f64| hull(&CURVED).map(|x| x[axis]).reduce(pick).unwrap();
     for xi in (0..=8).flat_map(|k| (0..=8).map(move |l| [f64::from(k) / 8.0, f64::from(l) / 8.0])) {
         let x = position(&CURVED, xi);
-        for axis in 0..2 {
-            assert!(of(axis, f64::min) <= x[axis] && x[axis] <= of(axis, f64::max), "{xi:?}");
+        for (axis, x) in x.into_iter().enumerate() {
+            assert!(of(axis, f64::min) <= x && x <= of(axis, f64::max), "{xi:?}");
         }
     }
 }
