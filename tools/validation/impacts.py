@@ -184,7 +184,7 @@ RING = Case(
             "s",
             3.53067e-3,
             COMPUTED,
-            0.005,
+            0.001,
             "a sine that does not decay is fitted to a motion that does a little",
             lambda runs, label=label: 2 * np.pi / frequency(*track(runs[label], "side", "velocity_1"), 1779.6),
             (label,),
