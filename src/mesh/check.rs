@@ -1,6 +1,10 @@
 //! From raw lists to a checked mesh.
 
 use super::{Error, Mesh, map, quality};
+use std::collections::HashMap;
+
+/// The part of its chord by which the curves of an edge may differ between its two cells: rounding of other programs.
+const SAME_CURVE: f64 = 1e-9;
 
 /// A corner below this scaled Jacobian is an error. The time step shrinks in proportion to it, and the inverse map of such a
 /// cell is exact to half of the digits at most.
@@ -31,6 +35,10 @@ impl Mesh {
         for edge in self.edges.iter_mut().filter(|edge| reversed[edge.cell]) {
             edge.face = REVERSED[edge.face];
         }
+        for [(first, face), (cell, own)] in self.shared_curves()? {
+            // Equal but for rounding: both sides see the same bits.
+            self.bulges[cell][own] = self.bulges[first][face];
+        }
         Ok(self)
     }
 
@@ -43,7 +51,8 @@ impl Mesh {
         self.consistent()?;
         (0..self.cells.len()).try_for_each(|cell| {
             self.distinct(cell).and_then(|()| self.convex(cell)).and_then(|()| self.unfolded(cell))
-        })
+        })?;
+        self.shared_curves().map(drop)
     }
 
     /// Checks that all indices point into their lists, and that there are cells.
@@ -87,7 +96,26 @@ impl Mesh {
         }
     }
 
-    /// An error of a curved cell whose map folds: det(dX/dxi), of degree 3 in each direction, is looked at in 9 x 9 points.
+    /// The two sides, cell and face, of each edge between cells of a curved mesh; an error where they have different curves.
+    fn shared_curves(&self) -> Result<Vec<[(usize, usize); 2]>, Error> {
+        let mut first: HashMap<[usize; 2], (usize, usize)> = HashMap::new();
+        let mut out = vec![];
+        for (cell, face) in (0..self.bulges.len()).flat_map(|cell| (0..4).map(move |face| (cell, face))) {
+            let [a, b] = self.face_nodes(cell, face);
+            let Some((other, theirs)) = first.insert([a.min(b), a.max(b)], (cell, face)) else { continue };
+            let (d, e) = (self.bulges[cell][face], self.bulges[other][theirs]);
+            let [p, q] = [a, b].map(|node| self.nodes[node]);
+            // Written so that NaN is an error too.
+            let near = (d[0] - e[0]).hypot(d[1] - e[1]) <= SAME_CURVE * (p[0] - q[0]).hypot(p[1] - q[1]);
+            if !near {
+                return Err(Error::TwoCurves { at: [p, q], cells: [other, cell].map(|cell| self.number(cell)) });
+            }
+            out.push([(other, theirs), (cell, face)]);
+        }
+        Ok(out)
+    }
+
+    /// An error of a curved cell whose map folds.
     fn unfolded(&self, cell: usize) -> Result<(), Error> {
         let map = self.map(cell);
         let Some(bulge) = map.bulge else { return Ok(()) };
@@ -95,13 +123,11 @@ impl Mesh {
         if bulge.iter().flatten().any(|x| !x.is_finite()) {
             return Err(Error::NotFinite { cell: number, at: map.corners[0] });
         }
-        let samples = (0..9).flat_map(|i| (0..9).map(move |j| [i, j].map(|k| f64::from(k) / 8.0)));
-        let scaled = samples.map(|xi| (quality::scaled_jacobian(&map, xi), xi));
-        match scaled.min_by(|a, b| a.0.total_cmp(&b.0)) {
-            Some((scaled, _)) if scaled >= SMALLEST_SCALED_JACOBIAN => Ok(()),
-            Some((scaled, xi)) => Err(Error::Folded { cell: number, at: map::position(&map, xi), scaled }),
-            None => Ok(()),
+        let (scaled, xi) = quality::smallest_scaled_jacobian(&map);
+        if scaled >= SMALLEST_SCALED_JACOBIAN {
+            return Ok(());
         }
+        Err(Error::Folded { cell: number, at: map::position(&map, xi), scaled })
     }
 
     fn convex(&self, cell: usize) -> Result<(), Error> {
@@ -217,5 +243,31 @@ mod tests {
         turned.cells[0].swap(1, 3);
         turned.bulges[0].swap(0, 2);
         assert_eq!(turned.checked().unwrap(), curved(-0.3));
+    }
+
+    #[test]
+    fn an_edge_has_one_curve_for_both_of_its_cells() {
+        let mut mesh = rectangle([2.0, 1.0], [2, 1]).unwrap();
+        let shared = [0.1, 0.05];
+        let bulge = |face: usize| std::array::from_fn(|k| if k == face { shared } else { [0.0; 2] });
+        mesh.bulges = vec![bulge(1), bulge(0)];
+        assert_eq!(mesh.clone().checked().unwrap(), mesh);
+        // Rounding: the second cell takes the bits of the first.
+        mesh.bulges[1][0][0] += 1e-12;
+        assert_eq!(mesh.clone().checked().unwrap().bulges[1][0], shared);
+        mesh.bulges[1][0][0] = 0.08;
+        assert!(matches!(mesh.check(), Err(Error::TwoCurves { cells: [1, 2], .. })), "{:?}", mesh.check());
+        mesh.bulges[1] = Default::default();
+        assert!(matches!(mesh.checked(), Err(Error::TwoCurves { .. })));
+    }
+
+    #[test]
+    fn a_fold_between_corners_and_middles_is_found() {
+        // det = 1 - b(xi1) d at xi2 = 0, with b(.5) = 1: below 0 for d above 1, in a strip about the middle that has no corner.
+        let folded = |d: f64| {
+            let square = single([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+            Mesh { bulges: vec![[[0.0; 2], [0.0; 2], [0.0, d], [0.0; 2], [0.0; 2]]], ..square }.checked()
+        };
+        assert!(folded(0.999).is_ok() && folded(1.001).is_err());
     }
 }

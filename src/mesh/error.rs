@@ -58,6 +58,14 @@ pub enum Error {
         /// det / (|a| |b|) of the tangents a, b there.
         scaled: f64,
     },
+    /// An edge that its two cells curve in different ways.
+    #[error("the edge {} has different middle nodes in cell {} and in cell {}: the cells overlap or leave a gap", points(.at), .cells[0], .cells[1])]
+    TwoCurves {
+        /// The ends of the edge.
+        at: [[f64; 2]; 2],
+        /// Numbers of the cells.
+        cells: [u64; 2],
+    },
     /// A cell that a move of nodes would turn inside out.
     #[error("cell {cell} with a corner at {} would be turned inside out", point(.at))]
     Turned {
@@ -162,6 +170,9 @@ impl Error {
             }
             Error::Folded { .. } => {
                 "move the middle nodes of its edges towards the middles of their chords, mesh it finer there, or save the mesh with first-order elements (in Gmsh `Mesh.ElementOrder = 1;`)"
+            }
+            Error::TwoCurves { .. } => {
+                "give both cells the same node in the middle of their edge (in Gmsh mesh all surfaces with one `Mesh.ElementOrder`)"
             }
             Error::Turned { .. } => "move the nodes by less: by a small part of the smallest cell",
             Error::Crowded { .. } => "remove the cells that lie upon each other; a surface was perhaps meshed twice",

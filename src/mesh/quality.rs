@@ -7,7 +7,8 @@ use super::{Mesh, map};
 /// The shape of one cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
-    /// Scaled Jacobian: min over the corners of det / (|a| |b|), 1 for rectangles, 0 or less for singular cells.
+    /// Scaled Jacobian: min of det / (|a| |b|) over the corners, of a curved cell over all of it; 1 for rectangles, 0 or less for
+    /// singular cells.
     pub scaled_jacobian: f64,
     /// The length of design and time step, [`map::h_e`], in m.
     pub h_e: f64,
@@ -21,6 +22,19 @@ pub struct Shape {
 pub fn scaled_jacobian(cell: &impl map::Map, xi: [f64; 2]) -> f64 {
     let j = map::jacobian(cell, xi);
     map::determinant(&j) / (j[0][0].hypot(j[1][0]) * j[0][1].hypot(j[1][1]))
+}
+
+/// Steps a direction in which a curved cell is looked at for its smallest det, which is of degree 3 in each direction.
+const STEPS: i32 = 32;
+
+/// The smallest det / (|a| |b|) of a cell, and where: at its corners, or of a curved cell anywhere.
+pub fn smallest_scaled_jacobian(cell: &impl map::Map) -> (f64, [f64; 2]) {
+    let steps = if cell.bulge().is_some() { STEPS } else { 1 };
+    let at = |k: i32| f64::from(k) / f64::from(steps);
+    let places = (0..=steps).flat_map(|i| (0..=steps).map(move |j| [at(i), at(j)]));
+    let scaled = places.map(|xi| (scaled_jacobian(cell, xi), xi));
+    // NaN is the smallest, which no check passes.
+    scaled.reduce(|a, b| if a.0 <= b.0 || a.0.is_nan() { a } else { b }).unwrap_or((f64::NAN, [0.0; 2]))
 }
 
 /// det / (|a| |b|) at each corner, a and b the edges that leave it.
@@ -37,7 +51,7 @@ pub fn shape(cell: &impl map::Map) -> Shape {
     let longest = lengths.into_iter().fold(0.0, f64::max);
     let shortest = lengths.into_iter().fold(f64::INFINITY, f64::min);
     Shape {
-        scaled_jacobian: corner_jacobians(cell).into_iter().fold(f64::INFINITY, f64::min),
+        scaled_jacobian: smallest_scaled_jacobian(cell).0,
         h_e: map::h_e(cell),
         area: map::area(cell),
         aspect: longest / shortest,

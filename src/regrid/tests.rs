@@ -251,3 +251,91 @@ fn a_cell_takes_nothing_from_another_material() {
     let error = transfer(&Grid { mesh: &old, material: &one }, &to, &field).unwrap_err().to_string();
     assert!(error.contains("has a material that the old grid lacks"), "{error}");
 }
+
+/// A rectangle of cells of 9 nodes whose edges and middles are curved by some percent of a cell, the outer ones too if `outer`.
+fn bulging(size: [f64; 2], cells: [usize; 2], outer: bool) -> Mesh {
+    let mut mesh = rectangle(size, cells).unwrap();
+    let h = size[0] / cells[0] as f64;
+    let by = |k: usize| [0.06 * h * (k as f64 * 1.7).sin(), 0.06 * h * (k as f64 * 2.9).cos()];
+    let links = crate::mesh::links(&mesh).unwrap();
+    let bulge = |cell: usize| -> map::Bulge {
+        std::array::from_fn(|face| {
+            if face == 4 {
+                return by(cell);
+            }
+            let [a, b] = mesh.face_nodes(cell, face);
+            let is_inner = links[cell][face].cell().is_some();
+            if is_inner || outer { by(a * b + a + b) } else { [0.0; 2] }
+        })
+    };
+    let bulges = (0..mesh.cells.len()).map(bulge).collect();
+    mesh.bulges = bulges;
+    mesh.checked().unwrap()
+}
+
+#[test]
+fn curved_grids_keep_uniform_states_and_totals() {
+    let size = [1.0, 0.8];
+    let grids = [
+        bulging(size, [4, 4], false),
+        bulging(size, [5, 3], false),
+        bulging(size, [4, 4], false).refined(2),
+        distorted(size, [4, 3], 0.2),
+        bulging(size, [4, 4], true),
+    ];
+    let uniform = |_: [f64; 2]| [1.1, 0.2, -0.1, 0.9, 30.0, -20.0];
+    for degree in 1..=3 {
+        let basis = Lagrange::new(degree);
+        for (i, old) in grids.iter().enumerate() {
+            for (j, new) in grids.iter().enumerate() {
+                let u = sampled(old, &basis, uniform);
+                let moved_to = moved(old, new, &basis, &u);
+                // Bodies of one area: all states stay. The last grid is another body by its curved outline: p changes with its area.
+                let most = if (i == 4) == (j == 4) { 6 } else { 4 };
+                let wanted = sampled(new, &basis, uniform);
+                let n = basis.len() * basis.len();
+                let off = |(k, (a, b)): (usize, (&f64, &f64))| if k / n % 6 < most { (a - b).abs() } else { 0.0 };
+                let off = moved_to.u.iter().zip(&wanted).enumerate().map(off).fold(0.0, f64::max);
+                // Rounding of numbers up to 30, and of sums over some hundred pieces.
+                assert!(off < 1e-11, "S{degree}, {i} to {j}: {off:e}");
+                let before = totals(old, &basis, &sampled(old, &basis, wavy));
+                let after = totals(new, &basis, &moved(old, new, &basis, &sampled(old, &basis, wavy)).u);
+                for k in 4..6 {
+                    // Rounding of totals of size 100.
+                    assert!(
+                        (before.0[k] - after.0[k]).abs() < 1e-11,
+                        "S{degree}, {i} to {j}: {:?} {:?}",
+                        before.0,
+                        after.0
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn parts_of_a_curved_cell_get_its_polynomial() {
+    let old = bulging([1.0, 0.8], [4, 4], true);
+    let new = old.refined(2);
+    let basis = Lagrange::new(2);
+    let u = sampled(&old, &basis, wavy);
+    let fine = moved(&old, &new, &basis, &u).u;
+    let n = basis.len() * basis.len();
+    let (mut worst, mut largest) = (0.0f64, 0.0f64);
+    for (cell, values) in fine.chunks_exact(6 * n).enumerate() {
+        let (whole, part) = (cell / 4, cell % 4);
+        for a in 0..n {
+            let xi = basis.node_2d(a);
+            let weights = basis.values_2d([((part % 2) as f64 + xi[0]) / 2.0, ((part / 2) as f64 + xi[1]) / 2.0]);
+            for k in 4..6 {
+                let exact: f64 = (0..n).map(|b| weights[b] * u[(6 * whole + k) * n + b]).sum();
+                worst = worst.max((values[k * n + a] - exact).abs());
+                largest = largest.max(exact.abs());
+            }
+        }
+    }
+    // Chords of parts lie beside those of the whole by 6 % of a quarter of a cell; there the polynomial of the neighbour is taken, which
+    // differs by some percent: measured below.
+    assert!(worst < 2e-2 * largest, "{worst:e} of {largest:e}");
+}

@@ -4,7 +4,7 @@ use super::tags::{self, Line};
 use super::{Of, Part, Tags};
 use crate::error::{Error, Place, Result};
 use crate::file::memory;
-use crate::io::gmsh::{self, Element, Kind, Middles, QUAD_9, Raw};
+use crate::io::gmsh::{self, Element, Kind, Middles, Raw};
 use crate::mesh::{BoundaryEdge, Error as MeshError, FACE_CORNERS, Mesh, faces::neighbours, links};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -88,9 +88,11 @@ pub fn nodal(mut parts: Vec<Part>, source: &Source) -> Result<Mesh> {
     }
     let bytes = (part.cells.count as u64).saturating_mul(CELL);
     memory::check(bytes).map_err(|why| source.error(why, "give fewer cells"))?;
-    if let (Some(kind), [(first, ..), ..]) = (Kind::of(QUAD_9), &part.cells.middles[..]) {
-        let (count, first) = (part.cells.middles.len(), *first as u64);
-        return Err(in_words(gmsh::Error::Element { kind, count, first }, source));
+    if !part.cells.middles.is_empty() {
+        let remedy = "give the fields on cells of 4 nodes";
+        return Err(
+            source.error("its cells are quadrilaterals of order 2, and fields are taken from cells of order 1", remedy)
+        );
     }
     if let Some((kind, &(count, first))) = part.cells.refused.iter().find_map(|(k, of)| Some((Kind::of(*k)?, of))) {
         return Err(in_words(gmsh::Error::Element { kind, count, first }, source));
