@@ -94,7 +94,7 @@ impl Entry {
 
     /// The map of the cell.
     fn map(&self, bulges: &[Bulge]) -> CellMap {
-        CellMap { corners: self.corners, bulge: bulge(bulges, self.cell) }
+        CellMap { corners: self.corners, bulge: map::bulge_in(bulges, self.cell) }
     }
 
     /// Parent coordinates of a point that belongs to the closed cell.
@@ -103,11 +103,6 @@ impl Entry {
         let xi = map::parent(&self.map(bulges), x)?;
         xi.iter().all(inside).then(|| xi.map(|xi| xi.clamp(0.0, 1.0)))
     }
-}
-
-/// How a cell is curved; none where it is straight.
-pub(super) fn bulge(bulges: &[Bulge], cell: usize) -> Option<Bulge> {
-    bulges.get(cell).filter(|bulge| **bulge != Bulge::default()).copied()
 }
 
 /// A node of the hierarchy. Its left child follows it in the list.

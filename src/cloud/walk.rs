@@ -1,6 +1,5 @@
 //! A walk from cell to cell across faces towards a point. It is fast if the point is near the one before.
 
-use super::locate::bulge;
 use crate::mesh::map::{self, Bulge, CellMap};
 use crate::mesh::{Mesh, faces};
 
@@ -65,7 +64,7 @@ impl Walk {
             }
             match worst {
                 w if w > stop.margin && w.is_finite() => {
-                    let map = CellMap { corners: stop.corners, bulge: bulge(bulges, cell) };
+                    let map = CellMap { corners: stop.corners, bulge: map::bulge_in(bulges, cell) };
                     let xi = map::parent(&map, x)?;
                     // Between its corners a point may still lie beyond a curved edge.
                     let inside = xi.iter().all(|xi| (MARGIN..=1.0 - MARGIN).contains(xi));

@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn a_curved_cell_that_folds_is_refused_by_number_and_a_turned_one_takes_its_curves_along() {
-        let square = single([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+        let square = single([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]);
         let curved =
             |by: f64| Mesh { bulges: vec![[[0.0; 2], [0.0; 2], [0.0, by], [0.0; 2], [0.0; 2]]], ..square.clone() };
         assert!(curved(-0.3).checked().is_ok() && curved(0.2).checked().is_ok());
@@ -265,7 +265,7 @@ mod tests {
     fn a_fold_between_corners_and_middles_is_found() {
         // det = 1 - b(xi1) d at xi2 = 0, with b(.5) = 1: below 0 for d above 1, in a strip about the middle that has no corner.
         let folded = |d: f64| {
-            let square = single([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+            let square = single([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]);
             Mesh { bulges: vec![[[0.0; 2], [0.0; 2], [0.0, d], [0.0; 2], [0.0; 2]]], ..square }.checked()
         };
         assert!(folded(0.999).is_ok() && folded(1.001).is_err());

@@ -84,6 +84,11 @@ pub fn middles(cell: &impl Map) -> [[f64; 2]; 5] {
     })
 }
 
+/// That of a cell in a list with one for each cell, or with none; none of a straight cell.
+pub fn bulge_in(bulges: &[Bulge], cell: usize) -> Option<Bulge> {
+    bulges.get(cell).filter(|bulge| **bulge != Bulge::default()).copied()
+}
+
 /// A cell that has a map: its corners alone, which is a straight cell, or a [`CellMap`].
 pub trait Map {
     /// Its corners.

@@ -55,8 +55,7 @@ impl Mesh {
 
     /// The map of a cell.
     pub fn map(&self, cell: usize) -> CellMap {
-        let bulge = self.bulges.get(cell).filter(|bulge| **bulge != Bulge::default()).copied();
-        CellMap { corners: self.corners(cell), bulge }
+        CellMap { corners: self.corners(cell), bulge: map::bulge_in(&self.bulges, cell) }
     }
 
     /// How many cells have a curved edge.

@@ -30,14 +30,13 @@ fn the_arcs_of_a_mesh_of_order_2_are_curved_in_each_format_and_kind_of_element()
         links(mesh).unwrap();
         for (name, radius) in [("inner", 1.0), ("outer", 2.0)] {
             for x in places(mesh, name) {
-                // Ends and middles lie on the circle; between them a parabola over 45 degrees is off by
-                // (pi/4)^4/1000 of the radius at most.
-                assert!((x[0].hypot(x[1]) - radius).abs() < 5e-4 * radius, "{name}: {x:?}");
+                // Ends and middles lie on the circle; between them a parabola over 45 degrees is 5.4e-4 of the radius inside.
+                assert!((x[0].hypot(x[1]) - radius).abs() < 6e-4 * radius, "{name}: {x:?}");
             }
         }
         let area: f64 = (0..4).map(|cell| map::area(&mesh.map(cell))).sum();
-        // Simpson's rule over 45 degrees: 2e-4 of the area. Of the polygon it is 2.6 % off.
-        assert!((area - 0.75 * PI).abs() < 5e-4, "{area}");
+        // Parabolas over 45 degrees: 1.84e-3 m^2 too little, .08 %. The polygon has 10 % too little.
+        assert!((area - 0.75 * PI).abs() < 2e-3, "{area}");
     }
     for (a, b) in binary.bulges.as_flattened().as_flattened().iter().zip(text.bulges.as_flattened().as_flattened()) {
         // Text has 16 digits.
@@ -116,8 +115,11 @@ fn cells_of_8_and_9_nodes_of_other_programs_are_curved() {
 fn a_curved_cell_that_folds_is_refused_with_its_number() {
     let text = std::fs::read_to_string(data("annulus_41.msh")).unwrap();
     // The middle of an inner arc, moved beyond the outer one.
-    let middle = format!("{:.4}", (PI / 8.0).cos());
-    let line = text.lines().find(|line| line.starts_with(&middle)).unwrap();
+    let middle = (PI / 8.0).cos();
+    let is_middle = |line: &&str| {
+        line.split(' ').next().and_then(|x| x.parse::<f64>().ok()).is_some_and(|x| (x - middle).abs() < 1e-6)
+    };
+    let line = text.lines().find(is_middle).unwrap();
     let why = gmsh::parse(text.replace(line, "3 3 0").as_bytes()).unwrap_err().to_string();
     assert!(why.contains("are curved so far that it folds at"), "{why}");
 }
