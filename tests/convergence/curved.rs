@@ -14,8 +14,9 @@ const CELLS: [&[usize]; 4] = [&[16, 32], &[8, 16], &[6, 12], &[6, 12]];
 #[test]
 fn smooth_curved_meshes_keep_the_order_of_every_method() {
     let mut rows = Vec::new();
-    for kind in [Kind::Rk, Kind::Fem, MIDPOINTS, JITTER] {
-        for degree in 1..=4 {
+    // Degree 4 on one kind: it takes as long as all others together. (All kinds were within .25 of 5 when it was tried.)
+    for (kind, most) in [(Kind::Rk, 3), (Kind::Fem, 3), (MIDPOINTS, 4), (JITTER, 3)] {
+        for degree in 1..=most {
             rows.push(Row::new(Grid::Curved, kind, degree, CELLS[degree - 1]));
         }
     }
