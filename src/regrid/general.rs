@@ -285,6 +285,11 @@ pub(super) fn settle(old: &Grid, new: &Grid, field: &Field, shares: &[Share], ou
     ];
     let whole = exact_sum(areas.iter().copied());
     refuse(out.uncovered, whole, beside_chords(old) + beside_chords(new))?;
+    if is_curved {
+        refuse_areas(
+            [old, new].map(|grid| exact_sum((0..grid.mesh.cells.len()).map(|cell| map::area(&grid.mesh.map(cell))))),
+        )?;
+    }
     let same = &out.same;
     out.u.par_chunks_exact_mut(stride).enumerate().filter(|(cell, _)| same[*cell].is_none()).for_each(|(cell, u)| {
         let area = map::area(&new.mesh.corners(cell));
@@ -312,6 +317,17 @@ fn beside_chords(grid: &Grid) -> f64 {
         FACE_CORNERS.iter().enumerate().map(of_face).sum::<f64>()
     };
     exact_sum((0..grid.mesh.bulges.len()).map(of_cell))
+}
+
+/// Refuses grids whose areas, with their curved edges, differ by more than a share.
+fn refuse_areas([old, new]: [f64; 2]) -> Result<(), Error> {
+    if (new - old).abs() <= LARGEST_DIFFERENCE * old {
+        return Ok(());
+    }
+    let what = format!(
+        "the new grid is not a grid of the same body: with its curved edges its area is {new:.3e} m^2, and that of the old grid is {old:.3e} m^2"
+    );
+    Err(Error::input(what, "give a mesh of the same body whose curved edges are of order 2 as well, or a finer one"))
 }
 
 /// Refuses grids that differ by more than a share of the area and what curved edges explain.

@@ -339,3 +339,15 @@ fn parts_of_a_curved_cell_get_its_polynomial() {
     // differs by some percent: measured below.
     assert!(worst < 2e-2 * largest, "{worst:e} of {largest:e}");
 }
+
+#[test]
+fn a_curved_body_is_not_the_polygon_of_its_corners_where_their_areas_differ() {
+    let polygon = rectangle([1.0, 1.0], [1, 1]).unwrap();
+    // 2/3 of chord times bulge at four sides: .133 of the area.
+    let out = [[-0.05, 0.0], [0.05, 0.0], [0.0, -0.05], [0.0, 0.05], [0.0; 2]];
+    let round = Mesh { bulges: vec![out], ..polygon.clone() };
+    let basis = Lagrange::new(1);
+    let (from, to) = (Grid { mesh: &round, material: &[0] }, Grid { mesh: &polygon, material: &[0] });
+    let why = transfer(&from, &to, &Field { basis: &basis, components: 6, u: &[1.0; 24], scale: &SCALE }).unwrap_err();
+    assert!(why.to_string().contains("with its curved edges its area is 1.000e0 m^2"), "{why}");
+}
