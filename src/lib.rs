@@ -62,45 +62,30 @@
 //!
 //! ## The house
 //!
-//! Data flows mesh, cloud, operators, state, step, output. The order of the modules below is the order of dependency: a
-//! module uses only those above it (`tests/layers.rs` holds this). [`Scheme`] is read-only, [`State`] is all that changes.
+//! Data flows mesh, cloud, operators, state, step, output. Mesh to step stand in a crate of their own, `dgmpm-core`, which knows no
+//! scene, no file and no command; this one hands on what a user needs of it. The order of the modules there and then below is the order of
+//! dependency: a module uses only those above it (`tests/layers.rs` holds this). [`Scheme`] is read-only, [`State`] is all that changes.
 //! A new law, flux, boundary condition, source, solution, output, quantity, grid, layout or limiter is one file and one entry of [`registry`]
 //! (`docs/extend.md`). The modules are private: what a user needs stands on the page of `pub use` below.
 
 // A program without an effect has code that nothing calls.
 #![cfg_attr(not(feature = "effects"), allow(dead_code, unused_imports))]
 #![deny(missing_docs)]
-// All `unsafe` is in `lane`, which has the one exception (`tests/layers.rs` holds this).
-#![deny(unsafe_code)]
+#![forbid(unsafe_code)]
 // Links to private modules are for those who work on the crate: `cargo doc --document-private-items`.
 #![allow(rustdoc::private_intra_doc_links)]
 
 #[macro_use]
-mod names;
-mod error;
+extern crate dgmpm_core;
+
+// The modules of the discretisation, under the names that they have in their crate.
+pub use dgmpm_core::tensor;
+use dgmpm_core::{
+    basis, boundary, built, cloud, contact, error, exchange, format, lane, limiter, material, mesh, names, operators,
+    quadrature, regrid, riemann, source, state, step, sum, words,
+};
+
 mod file;
-mod built;
-mod format;
-#[allow(unsafe_code)]
-mod lane;
-mod words;
-mod sum;
-pub mod tensor;
-mod quadrature;
-mod basis;
-mod mesh;
-mod cloud;
-mod operators;
-mod state;
-mod material;
-mod riemann;
-mod boundary;
-mod contact;
-mod source;
-mod exchange;
-mod step;
-mod limiter;
-mod regrid;
 mod io;
 mod chart;
 mod observe;
@@ -178,60 +163,11 @@ pub struct Recipes;
 /// All modules, for the tests and benches of this crate: no part of its surface, and without promises.
 #[doc(hidden)]
 pub mod parts {
-    pub mod error {
-        pub use crate::error::*;
-    }
-    pub mod built {
-        pub use crate::built::*;
-    }
-    pub mod lane {
-        pub use crate::lane::*;
-    }
-    pub mod words {
-        pub use crate::words::*;
-    }
-    pub mod quadrature {
-        pub use crate::quadrature::*;
-    }
-    pub mod basis {
-        pub use crate::basis::*;
-    }
-    pub mod mesh {
-        pub use crate::mesh::*;
-    }
-    pub mod cloud {
-        pub use crate::cloud::*;
-    }
-    pub mod operators {
-        pub use crate::operators::*;
-    }
-    pub mod state {
-        pub use crate::state::*;
-    }
-    pub mod material {
-        pub use crate::material::*;
-    }
-    pub mod riemann {
-        pub use crate::riemann::*;
-    }
-    pub mod boundary {
-        pub use crate::boundary::*;
-    }
-    pub mod source {
-        pub use crate::source::*;
-    }
-    pub mod exchange {
-        pub use crate::exchange::*;
-    }
-    pub mod step {
-        pub use crate::step::*;
-    }
-    pub mod limiter {
-        pub use crate::limiter::*;
-    }
-    pub mod regrid {
-        pub use crate::regrid::*;
-    }
+    pub use dgmpm_core::{
+        basis, boundary, built, cloud, error, exchange, lane, limiter, material, mesh, operators, quadrature, regrid,
+        riemann, source, state, step, words,
+    };
+
     pub mod io {
         pub use crate::io::*;
     }

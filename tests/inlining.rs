@@ -1,6 +1,6 @@
 //! The hot path is compiled for the processor's features: no intrinsic of AVX2 or AVX-512 stands in the program as a function of
 //! its own. One that does was called from code without the features (a generic function without `#[inline(always)]`, or
-//! a closure), which is 4 to 6 times slower, silently: see `src/lane.rs`.
+//! a closure), which is 4 to 6 times slower, silently: see `core/src/lane.rs`.
 #![cfg(all(target_arch = "x86_64", target_os = "linux"))]
 
 use object::{Object, ObjectSymbol, SymbolKind};

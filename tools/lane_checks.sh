@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 alone=$(mktemp -d)
 trap 'rm -rf "$alone"' EXIT
 mkdir "$alone/src"
-cp -r src/lane src/lane.rs "$alone/src"
+cp -r core/src/lane core/src/lane.rs "$alone/src"
 printf '//! The module `lane` of dgmpm alone.\npub mod lane;\n' >"$alone/src/lib.rs"
 cat >"$alone/Cargo.toml" <<'TOML'
 [package]

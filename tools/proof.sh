@@ -8,7 +8,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-all=$(sed -n 's/^effect-\(.*\) = \[\]/\1/p' Cargo.toml)
+all=$(sed -n 's/^effect-\([a-z]*\) = .*/\1/p' Cargo.toml)
 effects=${*:-all}
 [ "$effects" != each ] || effects=$all
 target=$(cargo metadata --format-version 1 --no-deps --offline | python3 -c 'import json, sys; print(json.load(sys.stdin)["target_directory"])')

@@ -26,23 +26,6 @@ const WITH_MEMORY: &str = "makes energy where a law with internal variables flow
 
 const OTHER: &str = "scheme.flux = \"rusanov\" damps all jumps of F, and holds some corners that are crushed";
 
-/// A flux of this crate as a [`step::Flux`]; compiled here, once, where [`step::Flux::new`] compiles its kernels in the crate that calls
-/// it.
-macro_rules! flux_from {
-    ($flux:ty) => {
-        impl From<$flux> for step::Flux {
-            #[inline(never)]
-            fn from(flux: $flux) -> step::Flux {
-                step::Flux::new(flux)
-            }
-        }
-    };
-}
-flux_from!(Dual);
-flux_from!(Rusanov);
-flux_from!(Acoustic);
-flux_from!(AcousticCurl);
-
 /// Every flux.
 pub static FLUXES: Table<Flux> = Table::new(&[
     Entry {

@@ -17,24 +17,6 @@ const POISSON: Parameter = Parameter::required(
     Form::Number(Check { range: "greater than -1 and less than 0.5", holds: |nu| nu > -1.0 && nu < 0.5 }),
 );
 
-/// A law of this crate as a [`Law`]. [`Law::new`] compiles the kernels for its law in the crate that calls it, which takes half a
-/// minute; these are compiled here, once.
-macro_rules! law_from {
-    ($law:ty) => {
-        impl From<$law> for Law {
-            #[inline(never)]
-            fn from(law: $law) -> Law {
-                Law::new(law)
-            }
-        }
-    };
-}
-law_from!(NeoHookean);
-law_from!(LinearElastic);
-law_from!(StVenantKirchhoff);
-#[cfg(feature = "effect-memory")]
-law_from!(J2);
-
 /// Every law.
 pub static LAWS: Table<Build> = Table::new(&[
     Entry {

@@ -24,7 +24,7 @@ fn smooth_curved_meshes_keep_the_order_of_every_method() {
 }
 
 /// The free stream: on cells curved in any way a uniform state stays, since the quadrature sees exact metric terms
-/// (src/operators/curved.rs).
+/// (core/src/operators/curved.rs).
 #[test]
 fn any_curved_cells_keep_a_uniform_state() {
     let problem = manufactured(1.0, 3.0);

@@ -222,7 +222,7 @@ fn build(entries: &mut [Entry], nodes: &mut Vec<Node>, bulges: &[Bulge]) {
 
 /// Rounds a parent coordinate to 2^-40 (1e-12 of the cell). Cells whose points agree up to the rounding of positions
 /// then have the same points to the bit, and share matrices.
-pub(crate) fn on_lattice(xi: f64) -> f64 {
+pub fn on_lattice(xi: f64) -> f64 {
     const STEPS: f64 = (1_u64 << 40) as f64;
     (xi * STEPS).round() / STEPS
 }

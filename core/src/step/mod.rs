@@ -17,6 +17,7 @@ mod block_work;
 mod block_energy;
 mod boundary_memory;
 pub mod cfl;
+mod compiled;
 mod corrected_stages;
 mod correction;
 mod creep;
@@ -277,7 +278,7 @@ pub(crate) fn with_scratch<R>(scratch: &[Mutex<Scratch>], body: impl FnOnce(&mut
 impl Scheme {
     /// Advances `state`, whose survey this is, by `dt` into `work.next`; [`Scheme::surveyed`] has the survey of the result.
     /// [`Motion`] does both.
-    pub(crate) fn step(&self, state: &State, dt: f64, survey: &Survey, work: &mut Work) {
+    pub fn step(&self, state: &State, dt: f64, survey: &Survey, work: &mut Work) {
         self.step_to(state, survey, dt, state.time + dt, work);
     }
 

@@ -106,7 +106,7 @@ impl Error {
 
     /// The same with another remedy, made from the present one; of bad input only.
     #[must_use]
-    pub(crate) fn with_remedy(self, change: impl FnOnce(String) -> String) -> Self {
+    pub fn with_remedy(self, change: impl FnOnce(String) -> String) -> Self {
         match self {
             Error::Input { what, place, remedy } => Error::Input { what, place, remedy: change(remedy) },
             other => other,
@@ -115,7 +115,7 @@ impl Error {
 
     /// Bad input that has no place gets this one.
     #[must_use]
-    pub(crate) fn or_at(self, at: Place) -> Self {
+    pub fn or_at(self, at: Place) -> Self {
         match self {
             Error::Input { what, place, remedy } if place == Place::default() => {
                 Error::Input { what, place: at, remedy }

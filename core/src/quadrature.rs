@@ -36,7 +36,7 @@ fn root(n: usize, i: usize) -> (f64, f64) {
 }
 
 /// P_k and P_k' at x in [-1, 1] for k = 0, 1, .., without end, by the three-term recurrences.
-pub(crate) fn legendre(x: f64) -> impl Iterator<Item = (f64, f64)> {
+pub fn legendre(x: f64) -> impl Iterator<Item = (f64, f64)> {
     let (mut before, mut now) = ((0.0, 0.0), (1.0, 0.0));
     (0_u32..).map(move |k| {
         let (found, k) = (now, f64::from(k));

@@ -2,6 +2,8 @@
 //! a name that does not exist the nearest one that does ("did you mean").
 
 /// An enum whose variants have names: `NAMES`, `name()` and serialisation as the name.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! names {
     ($(#[$doc:meta])* $type:ident { $($(#[$variant_doc:meta])* $variant:ident = $name:literal,)+ }) => {
         $(#[$doc])*
@@ -50,7 +52,7 @@ fn renamed<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
 }
 
 /// The name at an edit distance of at most a third of its length (and at least 1), if there is one.
-pub(crate) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
+pub fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
     let distance = |name: &&str| strsim::damerau_levenshtein(&given.to_lowercase(), name);
     let name = known.iter().copied().min_by_key(distance)?;
     let allowed = (name.chars().count().max(given.chars().count()) / 3).max(1);
@@ -60,7 +62,7 @@ pub(crate) fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
 }
 
 /// "did you mean `name`? ", or nothing.
-pub(crate) fn did_you_mean(given: &str, known: &[&str]) -> String {
+pub fn did_you_mean(given: &str, known: &[&str]) -> String {
     if let Some(now) = renamed(given, known) {
         return format!("`{given}` is called `{now}` now; ");
     }

@@ -147,13 +147,13 @@ impl Scheme {
 
     /// k l at a boundary group, Pa.
     #[inline]
-    pub(crate) fn spring_at(&self, group: usize, law: usize) -> f64 {
+    pub fn spring_at(&self, group: usize, law: usize) -> f64 {
         self.stiffness.at_edge(group, law)
     }
 
     /// beta M = k l of a face between two laws, Pa.
     #[inline]
-    pub(crate) fn spring_between(&self, laws: [usize; 2]) -> f64 {
+    pub fn spring_between(&self, laws: [usize; 2]) -> f64 {
         self.stiffness.between(laws)
     }
 
@@ -188,7 +188,7 @@ impl Scheme {
     }
 
     /// Numbers of the creep of a block.
-    pub(crate) fn creep_of_block(&self) -> usize {
+    pub fn creep_of_block(&self) -> usize {
         FACES * self.operators.line.m * AXES
     }
 

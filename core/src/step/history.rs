@@ -128,7 +128,7 @@ pub fn recall<L: Lanes, M: Material>(block: &[F8], point: usize) -> M::History<L
 
 impl Scheme {
     /// The internal variables of a point of a lane; what virgin material has, where the law has none.
-    pub(crate) fn internal_at(&self, state: &State, block: usize, lane: usize, point: usize) -> Vec<f64> {
+    pub fn internal_at(&self, state: &State, block: usize, lane: usize, point: usize) -> Vec<f64> {
         let law = &self.laws[self.operators.blocks.material[block]];
         let mut out = law.virgin();
         let count = law.history_len();
