@@ -81,8 +81,8 @@ extern crate dgmpm_core;
 // The modules of the discretisation, under the names that they have in their crate.
 pub use dgmpm_core::tensor;
 use dgmpm_core::{
-    basis, boundary, built, cloud, contact, error, exchange, format, lane, limiter, material, mesh, names, operators,
-    quadrature, regrid, riemann, source, state, step, sum, words,
+    basis, boundary, built, cloud, contact, error, exact, exchange, expression, format, lane, limiter, material, mesh,
+    names, operators, quadrature, regrid, riemann, source, state, step, sum, words,
 };
 
 mod file;
@@ -90,10 +90,9 @@ mod io;
 mod chart;
 mod observe;
 mod run;
-mod exact;
+mod accuracy;
 mod quantity;
 mod track;
-mod expression;
 pub mod registry;
 mod scene;
 mod problem;
@@ -140,7 +139,8 @@ pub use step::{Balance, Corrected, Correction, Flux, Law, Made, Notes, Rescue};
 pub use words::{Saved, Words};
 
 // Exact solutions and errors.
-pub use exact::{Errors, Exact, Norms, errors};
+pub use accuracy::{Errors, Norms, errors};
+pub use exact::Exact;
 
 // Quantities of interest.
 pub use quantity::{Quantity, Seen};
@@ -164,8 +164,8 @@ pub struct Recipes;
 #[doc(hidden)]
 pub mod parts {
     pub use dgmpm_core::{
-        basis, boundary, built, cloud, error, exchange, lane, limiter, material, mesh, operators, quadrature, regrid,
-        riemann, source, state, step, words,
+        basis, boundary, built, cloud, error, exact, exchange, expression, lane, limiter, material, mesh, operators,
+        quadrature, regrid, riemann, source, state, step, words,
     };
 
     pub mod io {
@@ -180,17 +180,14 @@ pub mod parts {
     pub mod run {
         pub use crate::run::*;
     }
-    pub mod exact {
-        pub use crate::exact::*;
+    pub mod accuracy {
+        pub use crate::accuracy::*;
     }
     pub mod quantity {
         pub use crate::quantity::*;
     }
     pub mod track {
         pub use crate::track::*;
-    }
-    pub mod expression {
-        pub use crate::expression::*;
     }
     pub mod scene {
         pub use crate::scene::*;

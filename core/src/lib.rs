@@ -73,5 +73,9 @@ pub mod step;
 pub mod limiter;
 #[doc(hidden)]
 pub mod regrid;
+#[doc(hidden)]
+pub mod exact;
+#[doc(hidden)]
+pub mod expression;
 
 pub use error::{Error, Place, Result};

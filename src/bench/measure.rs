@@ -2,8 +2,8 @@
 
 use super::Subject;
 use super::peaks::pool;
+use crate::accuracy::errors;
 use crate::error::{Error, Result};
-use crate::exact::errors;
 use crate::problem::Problem;
 use crate::run::dofs;
 use crate::state::State;

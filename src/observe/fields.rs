@@ -189,8 +189,8 @@ mod tests {
 
     #[test]
     fn every_field_has_its_name_back_and_as_many_components_as_values() {
-        let elastic = Law::new(NeoHookean::new(1.0, 0.3, 1.0));
-        let with_history = Law::new(J2::new(1.0, 0.3, 1.0, 0.01, 0.1));
+        let elastic = Law::from(NeoHookean::new(1.0, 0.3, 1.0));
+        let with_history = Law::from(J2::new(1.0, 0.3, 1.0, 0.01, 0.1));
         let fields = Field::of_laws(&[elastic.clone(), with_history.clone()]);
         let (deformation, history) = ([1.1, 0.1, 0.0, 0.9], vec![1.1, 0.8, 0.1, 1.2, 0.3]);
         let at = Point { deformation, velocity: [1.0, 2.0], displacement: [0.0; 2], history };

@@ -126,8 +126,8 @@ mod tests {
 
     #[test]
     fn names_are_unique_and_the_usual_ones_follow_the_laws() {
-        let elastic = [Law::new(NeoHookean::new(1.0, 0.3, 1.0))];
-        let plastic = [Law::new(J2::new(1.0, 0.3, 1.0, 0.01, 0.1))];
+        let elastic = [Law::from(NeoHookean::new(1.0, 0.3, 1.0))];
+        let plastic = [Law::from(J2::new(1.0, 0.3, 1.0, 0.01, 0.1))];
         let names = |all: &[Shade]| all.iter().map(|shade| shade.name.clone()).collect::<Vec<_>>();
         for laws in [&elastic[..], &plastic] {
             let all = names(&Shade::all(laws));
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn the_pressure_of_a_compressed_body_is_positive() {
-        let law = Law::new(NeoHookean::new(1.0, 0.3, 1.0));
+        let law = Law::from(NeoHookean::new(1.0, 0.3, 1.0));
         let shade = Shade::named(&["pressure".to_owned()], std::slice::from_ref(&law)).unwrap().remove(0);
         let at = |stretch: f64| Point {
             deformation: [stretch, 0.0, 0.0, stretch],

@@ -4,7 +4,7 @@
 use super::{Cost, Problem};
 use crate::mesh::parts::{EdgeCount, Part, parts};
 use crate::mesh::{BoundaryEdge, Link, Mesh};
-use crate::operators::{Blocks, Neighbour};
+use crate::operators::{Blocks, Certificate, Neighbour};
 use crate::scene::{Scene, When};
 use crate::state::State;
 use crate::step::{DeepestOverlap, Scheme, Survey, cfl};
@@ -46,6 +46,7 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     all.extend(fast_start(mesh, scheme, state, survey));
     all.extend(fast_boundary(scene, mesh, scheme));
     all.extend(thin(mesh, blocks, scene.scheme.degree));
+    all.extend(slow_cells(mesh, &cost.certificates));
     all.extend(short(scene, *dt));
     all.extend(other_springs(problem));
     let notice = scene.curl.build().notice;
@@ -203,6 +204,26 @@ fn thin(mesh: &Mesh, blocks: &Blocks, degree: usize) -> Option<String> {
         cells.len(),
         mesh.number(*first)
     ))
+}
+
+/// A cell whose own limit of the step is less than the median by more than this factor is named: the whole body waits for it.
+/// Meshes that are graded on purpose stay below.
+const SLOW: f64 = 20.0;
+
+/// The cells that make the step of all others small; none where none does.
+fn slow_cells(mesh: &Mesh, certificates: &[Certificate]) -> Option<String> {
+    let mut limits: Vec<(f64, usize)> = certificates.iter().map(|c| c.dt).zip(0..).collect();
+    limits.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (median, (least, cell)) = (limits.get(limits.len() / 2)?.0, *limits.first()?);
+    let slow = limits.iter().take_while(|(dt, _)| SLOW * dt < median).count();
+    (slow > 0).then(|| {
+        format!(
+            "{slow} cell(s), such as cell {}, allow a step of {least:.3e} s, where half of the cells allow {median:.3e} s or more: the run \
+             takes {:.0} times the steps that those need; such cells are small, flat, or have two edges in one smooth side of the body",
+            mesh.number(cell),
+            median / least
+        )
+    })
 }
 
 /// A word on each output and change of grid whose interval is below the first step, s.

@@ -2,8 +2,9 @@
 
 use super::Problem;
 use super::effects::{self, effects};
+use crate::accuracy::{Errors, errors};
 use crate::error::Result;
-use crate::exact::{Errors, Exact, errors};
+use crate::exact::Exact;
 use crate::format::{Row, row};
 use crate::io::fingerprint::Fingerprint;
 use crate::io::pending;

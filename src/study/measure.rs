@@ -7,10 +7,10 @@ use crate::scene::{MEASURES, Scene};
 /// What settings are compared and chosen by.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub enum Measure {
-    /// The standard measure, [`crate::exact::Errors::standard`].
+    /// The standard measure, [`crate::accuracy::Errors::standard`].
     #[default]
     Standard,
-    /// The same in L1, [`crate::exact::Errors::standard_l1`].
+    /// The same in L1, [`crate::accuracy::Errors::standard_l1`].
     L1,
     /// The error of a quantity of the scene.
     Quantity {

@@ -1,7 +1,7 @@
 //! What accuracy costs in time: one scene by many settings, the error and the seconds of each, the cheapest setting for
 //! an error or a time.
 //!
-//! The one number that stands for the error is a [`Measure`]: the standard one of [`crate::exact::Errors`] or the same in L1, against
+//! The one number that stands for the error is a [`Measure`]: the standard one of [`crate::accuracy::Errors`] or the same in L1, against
 //! the exact solution of the scene or, where none is known, against a finer run whose own error is estimated; or the error of a
 //! quantity that the scene names, against its exact value or, where none is known, by Richardson's extrapolation. Every method steps
 //! by the same share of its own stability limit, so that none is slowed down by a rule made for another.

@@ -3,8 +3,8 @@
 use super::SHORT;
 use super::case::{Case, run, why};
 use super::reference::Reference;
+use crate::accuracy::Errors;
 use crate::error::{Error, Result};
-use crate::exact::Errors;
 use crate::quantity::Measured;
 use crate::run::{Report, Stop, dofs};
 use crate::scene::Scene;

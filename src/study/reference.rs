@@ -3,9 +3,10 @@
 use super::case::{Case, Series, run, why};
 use super::measure::Measure;
 use super::richardson::order;
+use crate::accuracy::{Errors, compare, errors};
 use crate::cloud::Locator;
 use crate::error::{Error, Result};
-use crate::exact::{Errors, Exact, compare, errors};
+use crate::exact::Exact;
 use crate::observe::Solution;
 use crate::problem::Problem;
 use crate::registry::Method;

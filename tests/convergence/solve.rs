@@ -3,10 +3,11 @@
 use crate::points::Points;
 use crate::problem::Problem;
 use cpu_time::ThreadTime;
+use dgmpm::parts::accuracy::{Errors, errors};
 use dgmpm::parts::basis::TimeBasis;
 use dgmpm::parts::boundary::{Boundary, Free, Wall};
 use dgmpm::parts::cloud::{Cloud, seed};
-use dgmpm::parts::exact::{Errors, ExactForce, errors};
+use dgmpm::parts::exact::ExactForce;
 use dgmpm::parts::mesh::{Mesh, map, periodic_links};
 use dgmpm::parts::operators::{Needs, Operators, Sampling};
 use dgmpm::parts::riemann::Rusanov;

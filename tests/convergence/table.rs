@@ -3,7 +3,7 @@
 use crate::meshes::Grid;
 use crate::problem::{Problem, manufactured};
 use crate::solve::{Kind, error};
-use dgmpm::parts::exact::Errors;
+use dgmpm::parts::accuracy::Errors;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

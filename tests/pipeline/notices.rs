@@ -342,3 +342,15 @@ fn a_start_from_a_snapshot_of_a_run_with_other_springs_is_said() {
         assert!(message.contains("the checkpoint is of another scene: `scheme.springs` was"), "{message}");
     }
 }
+
+#[test]
+fn cells_for_which_the_whole_body_waits_are_named() {
+    let mut mesh = rectangle([1.0, 0.5], [4, 2]).unwrap();
+    assert!(!on(&mesh, "").run("check case.toml").contains("allow a step of"));
+    // The first column is 1/50 as wide as the other ones: 2 of 8 cells.
+    for node in mesh.nodes.iter_mut().filter(|node| node[0] == 0.25) {
+        node[0] = 0.005;
+    }
+    let said = on(&mesh, "").run("check case.toml");
+    assert!(said.contains("2 cell(s), such as cell ") && said.contains("takes 50 times the steps"), "{said}");
+}

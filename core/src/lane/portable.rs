@@ -9,9 +9,19 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// Pairs are vectors of the compiler: kernels written out number by number, eight of them, take it several times as long
 /// to compile.
 ///
-/// In unit tests operations are calls: those tests take AVX2 where they can, and compile in half of the time.
+/// Operations are calls on x86_64 without the feature `kernel-portable`, and in unit tests: written out, they take as long to compile as all other
+/// paths together, and no x86_64 since 2013 takes this path, but a few cheap ones.
 #[derive(Debug, Clone, Copy)]
 pub struct Portable([Pair; 4]);
+
+/// An operation: inlined, or a call, see [`Portable`].
+macro_rules! operation {
+    ($($item:tt)*) => {
+        #[cfg_attr(any(feature = "kernel-portable", not(any(test, target_arch = "x86_64"))), inline(always))]
+        #[cfg_attr(all(not(feature = "kernel-portable"), any(test, target_arch = "x86_64")), inline(never))]
+        $($item)*
+    };
+}
 
 /// What is done pair by pair.
 macro_rules! by_pair {
@@ -25,10 +35,10 @@ macro_rules! operator {
     ($trait:ident, $method:ident) => {
         impl $trait for Portable {
             type Output = Portable;
-            #[cfg_attr(not(test), inline(always))]
-            #[cfg_attr(test, inline(never))]
-            fn $method(self, other: Portable) -> Portable {
-                by_pair!(|i: usize| $trait::$method(self.0[i], other.0[i]))
+            operation! {
+                fn $method(self, other: Portable) -> Portable {
+                    by_pair!(|i: usize| $trait::$method(self.0[i], other.0[i]))
+                }
             }
         }
     };
@@ -40,10 +50,10 @@ operator!(Div, div);
 
 impl Neg for Portable {
     type Output = Portable;
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn neg(self) -> Portable {
-        by_pair!(|i: usize| -self.0[i])
+    operation! {
+        fn neg(self) -> Portable {
+            by_pair!(|i: usize| -self.0[i])
+        }
     }
 }
 
@@ -53,84 +63,84 @@ impl Lane for Portable {
         Portable([Pair::new([x, x]); 4])
     }
     // Never fused: without the instruction it would be a call of libm, 25 times slower.
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn mul_add(self, b: Portable, c: Portable) -> Portable {
-        self * b + c
+    operation! {
+        fn mul_add(self, b: Portable, c: Portable) -> Portable {
+            self * b + c
+        }
     }
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn sqrt(self) -> Portable {
-        by_pair!(|i: usize| self.0[i].sqrt())
+    operation! {
+        fn sqrt(self) -> Portable {
+            by_pair!(|i: usize| self.0[i].sqrt())
+        }
     }
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn min(self, other: Portable) -> Portable {
-        by_pair!(|i: usize| self.0[i].min(other.0[i]))
+    operation! {
+        fn min(self, other: Portable) -> Portable {
+            by_pair!(|i: usize| self.0[i].min(other.0[i]))
+        }
     }
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn max(self, other: Portable) -> Portable {
-        by_pair!(|i: usize| self.0[i].max(other.0[i]))
+    operation! {
+        fn max(self, other: Portable) -> Portable {
+            by_pair!(|i: usize| self.0[i].max(other.0[i]))
+        }
     }
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn inverse_cube_root_guess(self) -> Portable {
-        by_pair!(|i: usize| self.0[i].each(Lane::inverse_cube_root_guess))
+    operation! {
+        fn inverse_cube_root_guess(self) -> Portable {
+            by_pair!(|i: usize| self.0[i].each(Lane::inverse_cube_root_guess))
+        }
     }
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn split(self) -> (Portable, Portable) {
-        let of = |i: usize| self.0[i].split();
-        let [a, b, c, d] = [of(0), of(1), of(2), of(3)];
-        (Portable([a.0, b.0, c.0, d.0]), Portable([a.1, b.1, c.1, d.1]))
+    operation! {
+        fn split(self) -> (Portable, Portable) {
+            let of = |i: usize| self.0[i].split();
+            let [a, b, c, d] = [of(0), of(1), of(2), of(3)];
+            (Portable([a.0, b.0, c.0, d.0]), Portable([a.1, b.1, c.1, d.1]))
+        }
     }
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn power_of_two(self) -> Portable {
-        by_pair!(|i: usize| self.0[i].each(Lane::power_of_two))
+    operation! {
+        fn power_of_two(self) -> Portable {
+            by_pair!(|i: usize| self.0[i].each(Lane::power_of_two))
+        }
     }
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn where_positive(self, yes: Portable, no: Portable) -> Portable {
-        by_pair!(|i: usize| self.0[i].where_positive(yes.0[i], no.0[i]))
+    operation! {
+        fn where_positive(self, yes: Portable, no: Portable) -> Portable {
+            by_pair!(|i: usize| self.0[i].where_positive(yes.0[i], no.0[i]))
+        }
     }
 }
 
 impl Lanes for Portable {
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn load(from: &F8) -> Portable {
-        by_pair!(|i: usize| Pair::new([from.0[2 * i], from.0[2 * i + 1]]))
-    }
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn store(self, to: &mut F8) {
-        for i in 0..4 {
-            [to.0[2 * i], to.0[2 * i + 1]] = self.0[i].numbers();
+    operation! {
+        fn load(from: &F8) -> Portable {
+            by_pair!(|i: usize| Pair::new([from.0[2 * i], from.0[2 * i + 1]]))
         }
     }
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn from_lanes(numbers: [f64; LANES]) -> Portable {
-        Self::load(&F8(numbers))
+    operation! {
+        fn store(self, to: &mut F8) {
+            for i in 0..4 {
+                [to.0[2 * i], to.0[2 * i + 1]] = self.0[i].numbers();
+            }
+        }
+    }
+    operation! {
+        fn from_lanes(numbers: [f64; LANES]) -> Portable {
+            Self::load(&F8(numbers))
+        }
     }
 }
 
 impl Pair {
-    /// See [`Lane::split`].
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn split(self) -> (Pair, Pair) {
-        let [a, b] = self.numbers().map(Lane::split);
-        (Pair::new([a.0, b.0]), Pair::new([a.1, b.1]))
+    operation! {
+        /// See [`Lane::split`].
+        fn split(self) -> (Pair, Pair) {
+            let [a, b] = self.numbers().map(Lane::split);
+            (Pair::new([a.0, b.0]), Pair::new([a.1, b.1]))
+        }
     }
-    /// See [`Lane::where_positive`].
-    #[cfg_attr(not(test), inline(always))]
-    #[cfg_attr(test, inline(never))]
-    fn where_positive(self, yes: Pair, no: Pair) -> Pair {
-        let (x, yes, no) = (self.numbers(), yes.numbers(), no.numbers());
-        Pair::new([x[0].where_positive(yes[0], no[0]), x[1].where_positive(yes[1], no[1])])
+    operation! {
+        /// See [`Lane::where_positive`].
+        fn where_positive(self, yes: Pair, no: Pair) -> Pair {
+            let (x, yes, no) = (self.numbers(), yes.numbers(), no.numbers());
+            Pair::new([x[0].where_positive(yes[0], no[0]), x[1].where_positive(yes[1], no[1])])
+        }
     }
 }
 

@@ -1,8 +1,7 @@
-//! Exact and manufactured solutions, and the error of a computed state against them.
+//! Exact and manufactured solutions.
 //!
 //! A new solution is one file with a type that implements [`Exact`] and its entry in the registry.
 
-mod errors;
 mod linear_bar;
 mod manufactured;
 mod j2_impact;
@@ -12,7 +11,6 @@ mod vortex;
 mod wall_impact;
 
 pub use crate::lane::Dual;
-pub use errors::{Errors, Norms, Values, compare, errors};
 pub use j2_impact::J2Impact;
 pub use linear_bar::LinearBar;
 pub use manufactured::Manufactured;

@@ -1,6 +1,6 @@
 //! The error of a state against an exact solution, by grid quadrature with N + 3 points per direction.
 
-use super::Exact;
+use crate::exact::Exact;
 use crate::mesh::{Mesh, map};
 use crate::observe::Solution;
 use crate::quadrature::gauss_legendre;
@@ -155,4 +155,24 @@ pub fn compare<'a>(
 /// |f|^2 + |v|^2 / c_p^2.
 fn measure(f: [f64; 4], v: [f64; 2], slowness: f64) -> f64 {
     f.iter().map(|f| f * f).sum::<f64>() + v.iter().map(|v| (v * slowness).powi(2)).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::NeoHookean;
+
+    #[test]
+    fn an_error_in_half_of_the_body_counts_by_half_in_l1_and_by_its_root_in_the_standard_measure() {
+        let (mesh, law) =
+            (crate::mesh::rectangle([2.0, 1.0], [2, 1]).unwrap(), Law::from(NeoHookean::new(2e11, 0.3, 7800.0)));
+        // F11 is 1.3 where it should be 1.1, in one of two cells: an error of 2 by the size of F - 1.
+        let errors = compare(&mesh, 3, &|_| &law, &|cell, _, _| {
+            let at = |f: f64| ([f, 0.0, 0.0, 1.0], [0.0; 2], vec![]);
+            [at(if cell == 0 { 1.3 } else { 1.1 }), at(1.1)]
+        });
+        // Sums of a few numbers: roundings.
+        assert!((errors.standard_l1 - 1.0).abs() < 1e-12, "{}", errors.standard_l1);
+        assert!((errors.standard - 2.0_f64.sqrt()).abs() < 1e-12, "{}", errors.standard);
+    }
 }

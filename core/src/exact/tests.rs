@@ -142,16 +142,3 @@ fn the_linear_bar_keeps_wall_and_free_end() {
         assert!((bar.deformation([3.0, 0.0], t)[0] - 1.0).abs() < 1e-15);
     }
 }
-
-#[test]
-fn an_error_in_half_of_the_body_counts_by_half_in_l1_and_by_its_root_in_the_standard_measure() {
-    let (mesh, law) = (crate::mesh::rectangle([2.0, 1.0], [2, 1]).unwrap(), steel());
-    // F11 is 1.3 where it should be 1.1, in one of two cells: an error of 2 by the size of F - 1.
-    let errors = compare(&mesh, 3, &|_| &law, &|cell, _, _| {
-        let at = |f: f64| ([f, 0.0, 0.0, 1.0], [0.0; 2], vec![]);
-        [at(if cell == 0 { 1.3 } else { 1.1 }), at(1.1)]
-    });
-    // Sums of a few numbers: roundings.
-    assert!((errors.standard_l1 - 1.0).abs() < 1e-12, "{}", errors.standard_l1);
-    assert!((errors.standard - 2.0_f64.sqrt()).abs() < 1e-12, "{}", errors.standard);
-}
