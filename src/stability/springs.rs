@@ -161,6 +161,8 @@ impl<'a> Faces<'a> {
             return None;
         };
         let (there, other) = (operators.blocks.cells[across.face / FACES][across.lane], across.face % FACES);
+        let held =
+            [operators.held_ends(block, face, lane), operators.held_ends(across.face / FACES, other, across.lane)];
         let (mut own, mut beyond) = (vec![], vec![]);
         for point in 0..operators.line.m {
             let (normal, _) = operators.geometry.of(block).at_face_of(lane, face, point);
@@ -168,8 +170,8 @@ impl<'a> Faces<'a> {
             let moduli = [self.modulus(cell, face, point, normal), self.modulus(there, other, opposite, normal)];
             let [stiffness, _] = hold([-1.0, 0.0], moduli, 1.0);
             let factor = (operators.line.basis.weights[point] * stiffness).sqrt() * self.problem.h;
-            own.push(self.at_nodes(&operators.line.held, face, point, factor));
-            beyond.push(self.at_nodes(&operators.line.held, other, opposite, factor));
+            own.push(self.at_nodes(&held[0], face, point, factor));
+            beyond.push(self.at_nodes(&held[1], other, opposite, factor));
         }
         Some((there, Sides { own, beyond }))
     }
@@ -178,12 +180,12 @@ impl<'a> Faces<'a> {
         if across.flip { m - 1 - point } else { point }
     }
 
-    /// The factors of all nodes of a cell in the trace at a point of a face, from those of the line at both ends.
-    fn at_nodes(&self, ends: &[Vec<f64>; 2], face: usize, point: usize, factor: f64) -> Vec<f64> {
+    /// The factors of all nodes of a cell in the trace at a point of a face, from those of the line across it.
+    fn at_nodes(&self, end: &[f64], face: usize, point: usize, factor: f64) -> Vec<f64> {
         let m = self.problem.scheme.operators.line.m;
         let (first, stride) = if face < 2 { (point, m) } else { (point * m, 1) };
         let mut out = vec![0.0; m * m];
-        ends[face % 2].iter().enumerate().for_each(|(i, end)| out[first + stride * i] = factor * end);
+        end.iter().enumerate().for_each(|(i, end)| out[first + stride * i] = factor * end);
         out
     }
 
@@ -191,7 +193,7 @@ impl<'a> Faces<'a> {
     fn modulus(&self, cell: usize, face: usize, point: usize, normal: [f64; 2]) -> f64 {
         let (scheme, stride) = (&self.problem.scheme, self.problem.at_nodes());
         let n = scheme.operators.nodes();
-        let ends = self.at_nodes(&scheme.operators.line.ends, face, point, 1.0);
+        let ends = self.at_nodes(&scheme.operators.line.ends[face % 2], face, point, 1.0);
         let f = std::array::from_fn(|k| {
             ends.iter().zip(&self.base[cell * stride + k * n..]).map(|(end, f)| end * f).sum::<f64>()
         });

@@ -8,6 +8,7 @@ pub mod curl_free;
 pub mod curved;
 pub mod from_points;
 pub mod geometry;
+pub mod held_shares;
 pub mod matrix;
 mod order;
 pub mod point_matrices;
@@ -22,6 +23,7 @@ pub use curl_free::CurlFree;
 pub use from_points::from_points;
 pub(crate) use geometry::with_terms;
 pub use geometry::{BlockMetric, Cofactors, Geometry, Metric, NodeMetric, determinant};
+pub use held_shares::HeldShares;
 pub use matrix::{Matrix, Pool, Share};
 pub use point_matrices::PointMatrices;
 pub use points::{Points, Sampling};
@@ -71,6 +73,8 @@ pub struct Operators {
     pub blocks: Blocks,
     /// Metric terms at nodes and faces.
     pub geometry: Geometry,
+    /// What traces of the displacement leave out between unequal cells; none on equal ones and at odd degrees.
+    pub held_shares: Option<HeldShares>,
     /// Transfer between points and nodes, and derivatives at points; `None` for RK-DGFEM.
     pub points: Option<Points>,
     /// The projection onto gradients; `None` if the scene has no control of the curl.
@@ -104,9 +108,10 @@ impl Operators {
     /// Completes stored matrices by the parts that are quickly computed from the mesh.
     pub fn assemble(mesh: &Mesh, line: Line, blocks: Blocks, needs: &Needs, stored: Stored) -> Self {
         let geometry = Geometry::new(mesh, &blocks, &line);
+        let held_shares = HeldShares::of(mesh, &blocks, needs.degree);
         let points = needs.sampling.zip(stored.points).map(|(s, pool)| Points::new(mesh, &blocks, &line, s, pool));
         let curl_free = stored.curl_free.map(|pool| CurlFree::new(pool, mesh, &blocks, &line));
-        Self { degree: needs.degree, line, blocks, geometry, points, curl_free, key: String::new() }
+        Self { degree: needs.degree, line, blocks, geometry, held_shares, points, curl_free, key: String::new() }
     }
 
     /// With the hash of their input.
@@ -150,9 +155,19 @@ impl Operators {
         out
     }
 
+    /// The factors of the nodes of a line in the trace of the displacement whose jump is held, at a face of the cell in a lane: [`Line::held`],
+    /// with its share between unequal cells.
+    pub fn held_ends(&self, block: usize, face: usize, lane: usize) -> Vec<f64> {
+        let share =
+            self.held_shares.as_ref().and_then(|all| all.block(block)).map_or(1.0, |shares| shares[face].0[lane]);
+        let (plain, held) = (&self.line.ends[face % 2], &self.line.held[face % 2]);
+        plain.iter().zip(held).map(|(plain, held)| share.mul_add(held - plain, *plain)).collect()
+    }
+
     /// Bytes held by matrices and metric terms.
     pub fn bytes(&self) -> usize {
         self.geometry.bytes()
+            + self.held_shares.as_ref().map_or(0, HeldShares::bytes)
             + self.points.as_ref().map_or(0, Points::bytes)
             + self.curl_free.as_ref().map_or(0, CurlFree::bytes)
             + self.blocks.bytes()

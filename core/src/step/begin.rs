@@ -12,6 +12,7 @@ use super::predictor::transfer::{FieldsToPoints, ToNodes};
 use super::predictor::{self, Predictor};
 use super::sources::AddSources;
 use super::sweeps::Sweep;
+use super::unequal::UnequalTraces;
 use super::volume;
 use super::worst::Worst;
 use super::{Method, Part, Phase, Scratch};
@@ -192,6 +193,10 @@ impl Begin<'_> {
         } else {
             kernel.run(volume::Traces::<'_, M, false> { line, metric, arrays, width, with_displacement, traces });
         });
+        if let (true, Some(shares)) = (with_displacement, block.held_shares()) {
+            let displacement = &self.scratch.nodes.displacement;
+            kernel.run(UnequalTraces { line, shares, displacement, width, traces: self.traces });
+        }
         // Later stages of RK are no states: what is wrong with them shows in the state that they make.
         let worst = (block.stage.number == 0).then_some((&mut *self.worst, block.cells()));
         let speeds = volume::Speeds { metric, width, looks, traces: self.traces, worst };

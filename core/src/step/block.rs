@@ -3,6 +3,7 @@
 use super::volume::Masses;
 use super::{Law, Scheme, Stage};
 use crate::lane::F8;
+use crate::mesh::FACES;
 use crate::operators::{BlockMetric, Points, with_nodes};
 use crate::riemann::Medium;
 use crate::state::State;
@@ -23,6 +24,12 @@ impl<'a> Block<'a> {
     #[inline]
     pub fn metric(&self) -> BlockMetric<'a> {
         self.scheme.operators.geometry.of(self.number)
+    }
+
+    /// What its traces of the displacement leave out, by face; none between equal cells.
+    #[inline]
+    pub fn held_shares(&self) -> Option<&'a [F8; FACES]> {
+        self.scheme.operators.held_shares.as_ref()?.block(self.number)
     }
 
     /// The number of its material.

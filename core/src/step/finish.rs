@@ -13,6 +13,7 @@ use super::rotation::Rotation;
 use super::sources::SourceEnd;
 use super::sums::Terms;
 use super::survey::{Examine, History};
+use super::unequal::UnequalLift;
 use super::volume::Masses;
 use super::worst::Worst;
 use super::{Part, Phase, Scratch, Speeds, Survey, across, curl, curl_core, flux};
@@ -100,8 +101,13 @@ impl Finish<'_> {
         if let Some(torques) = self.torques.as_deref_mut() {
             block.book_torque(self.state, &nodes.lift, torques);
         }
+        let holds = block.scheme.flux.looks() == Looks::Displacement;
+        if let (true, Some(shares)) = (holds, block.held_shares()) {
+            let (lift, held) = (&mut nodes.lift[..], &mut nodes.held[..]);
+            kernel.run(UnequalLift { points: line.m, shares, lift, held });
+        }
         let (metric, nodes) = (block.metric(), &*nodes);
-        let held = (block.scheme.flux.looks() == Looks::Displacement).then_some(&nodes.held[..]);
+        let held = holds.then_some(&nodes.held[..]);
         let lift = &nodes.lift[..];
         with_terms!(metric, metric => with_nodes!(line.m, M => {
             kernel.run(Lift::<'_, M, _> { line, metric, lift, held, rate: self.rate });

@@ -66,6 +66,7 @@ pub mod sweeps;
 mod tile_memory;
 mod tiles;
 mod trace;
+mod unequal;
 mod volume;
 mod weights;
 mod whole_faces;
