@@ -1,5 +1,9 @@
 //! Fluxes (3) of the four faces of a block, lifted: len (Flux* - own flux of the F rows).
 
+mod special;
+
+pub(super) use special::SpecialFaces;
+
 use super::across::{Aligned, Apart, Beyond, Joined, LaneByLane, Other, Traces};
 use super::balance::{BlockBalance, boundary_loss, boundary_power};
 use super::block::Block;
@@ -16,19 +20,19 @@ use crate::boundary::{FacePoint, Moment};
 use crate::built;
 use crate::lane::{F8, LANES, Lanes, load_array, store_array};
 use crate::mesh::{FACES, map};
-use crate::operators::{BlockMetric, Neighbour, Side};
+use crate::operators::{Metric, Neighbour, Side};
 use crate::riemann::{Looks, Medium, Riemann, Trace, hold, interface};
 use crate::state::UNKNOWNS;
 use crate::tensor::DEFORMATION;
 
-/// The four faces of a block, all lanes as faces between cells of one law.
+/// The four faces of a block with straight cells and without springs, all lanes as faces between cells of one law.
 pub(super) struct Faces<'a> {
     metered: bool,
     /// Own traces, [face][point][width].
     own: &'a [F8],
     /// The other side's, by face, with its own normal.
     other: &'a [Beyond<'a>; FACES],
-    metric: BlockMetric<'a>,
+    metric: &'a Metric<F8>,
     /// Points of a face.
     points: usize,
     /// See [`Block::turning`].
@@ -38,82 +42,57 @@ pub(super) struct Faces<'a> {
     lift: &'a mut [F8],
     /// What is held, [face][point][2], out where the flux looks at the displacement.
     held: &'a mut [F8],
-    /// The springs of the faces; none where they have none.
-    springs: Option<Springs<'a>>,
 }
+
+/// Runs `$body` with `$other` as the [`Other`] that a [`Beyond`] is: one loop for each way in which the traces lie, so that none looks at
+/// it point by point.
+macro_rules! with_other {
+    ($lanes:ident, $numbers:ident, $beyond:expr, $other:ident => $body:expr) => {
+        match $beyond {
+            Beyond::Aligned($other) => $body,
+            Beyond::Joined($other) => $body,
+            Beyond::Apart($other) if $lanes::PICKS => $body,
+            Beyond::Apart(apart) => {
+                let $other = LaneByLane::new::<$numbers>(apart);
+                $body
+            }
+        }
+    };
+}
+use with_other;
 
 impl FluxWork for Faces<'_> {
     #[inline(always)]
     fn run<L: Lanes, R: Riemann>(mut self, riemann: &R) {
-        // With springs in loops of their own: those without know nothing of them.
-        with_width!(R::LOOKS, self.metered, W => if R::LOOKS == Looks::Displacement && self.springs.is_some() {
-            self.of_faces::<L, _, W, true>(riemann);
-        } else {
-            self.of_faces::<L, _, W, false>(riemann);
+        with_width!(R::LOOKS, self.metered, W => {
+            for face in 0..FACES {
+                with_other!(L, W, self.other[face], other => self.of_face::<L, _, _, W>(face, other, riemann));
+            }
         });
     }
 }
 
 impl Faces<'_> {
     #[inline(always)]
-    fn of_faces<L: Lanes, R: Riemann, const W: usize, const SPRINGS: bool>(&mut self, riemann: &R) {
-        for face in 0..FACES {
-            // One loop for each way in which the traces lie: none looks at it point by point.
-            match self.other[face] {
-                Beyond::Aligned(other) => self.of_face::<L, _, _, W, SPRINGS>(face, other, riemann),
-                Beyond::Joined(other) => self.of_face::<L, _, _, W, SPRINGS>(face, other, riemann),
-                Beyond::Apart(other) if L::PICKS => self.of_face::<L, _, _, W, SPRINGS>(face, other, riemann),
-                Beyond::Apart(other) => {
-                    self.of_face::<L, _, _, W, SPRINGS>(face, LaneByLane::new::<W>(other), riemann);
-                }
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn of_face<L: Lanes, O: Other, R: Riemann, const W: usize, const SPRINGS: bool>(
-        &mut self,
-        face: usize,
-        other: O,
-        riemann: &R,
-    ) {
+    fn of_face<L: Lanes, O: Other, R: Riemann, const W: usize>(&mut self, face: usize, other: O, riemann: &R) {
         let m = self.points;
         let mut medium = self.medium.splat::<L>();
         let own = &self.own.as_chunks::<W>().0[face * m..(face + 1) * m];
         if R::LOOKS == Looks::Displacement {
             medium.turn = turn::<L, O, W>(own, &other, self.turning);
         }
+        let metric = self.metric.load::<L>();
+        let (normal, length) = (metric.normal(face), metric.length(face));
         let lift = &mut self.lift.as_chunks_mut::<UNKNOWNS>().0[m * face..m * (face + 1)];
-        let [runs, points] = self.metric.runs(m);
-        for run in 0..runs {
-            let (normal, length) = self.metric.at_face::<L>(face, run);
-            // No closures in kernels, see `lane`.
-            let mut springs = match (SPRINGS, &mut self.springs) {
-                (true, Some(springs)) => {
-                    let inverse = self.metric.inverse_length::<L>(face, run);
-                    Some((springs.pull.face::<L, O, W>(own, &other, (normal, inverse)), springs))
-                }
-                _ => None,
-            };
-            for point in run * points..(run + 1) * points {
-                let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[point]));
-                let there = turned::<L, R, W>(other.load::<L, W>(point));
-                let plus = trace_of::<L, R, W>(&there);
-                if R::LOOKS == Looks::Displacement {
-                    let held = held(&load_array::<L, W>(&own[point]), &there, self.medium.density);
-                    store_array(held, &mut self.held.as_chunks_mut::<2>().0[m * face + point]);
-                }
-                let (mut lifted, twice) = if SPRINGS {
-                    riemann.lifted_and_admittance(&minus, &plus, normal, &medium, length)
-                } else {
-                    (riemann.lifted(&minus, &plus, normal, &medium, length), L::zero())
-                };
-                if let Some((of_face, springs)) = &mut springs {
-                    let admittance = L::splat(0.5) * twice;
-                    springs.act(m * face + point, of_face, [&minus, &plus], admittance, &mut lifted);
-                }
-                store_array(lifted, &mut lift[point]);
+        for point in 0..m {
+            let minus = trace_of::<L, R, W>(&load_array::<L, W>(&own[point]));
+            let there = turned::<L, R, W>(other.load::<L, W>(point));
+            let plus = trace_of::<L, R, W>(&there);
+            if R::LOOKS == Looks::Displacement {
+                let held = held(&load_array::<L, W>(&own[point]), &there, self.medium.density);
+                store_array(held, &mut self.held.as_chunks_mut::<2>().0[m * face + point]);
             }
+            store_array(riemann.lifted(&minus, &plus, normal, &medium, length), &mut lift[point]);
         }
     }
 }
@@ -170,15 +149,19 @@ impl Block<'_> {
             metered,
             own,
             other: &other,
-            metric,
+            metric: metric.straight,
             points: m,
             turning,
             medium,
             lift: &mut nodes.lift,
             held: &mut nodes.held,
-            springs: springs.as_mut().map(Springs::again),
         };
-        flux.faces(scheme.kernel, faces);
+        if springs.is_some() || metric.curved.is_some() {
+            let springs = springs.as_mut().map(Springs::again);
+            flux.special_faces(scheme.kernel, SpecialFaces { faces, metric, springs });
+        } else {
+            flux.faces(scheme.kernel, faces);
+        }
         for face in 0..FACES {
             let met = meetings.filter(|_| built::CONTACT).map(|meetings| Met { meetings, traces });
             let sides = Sides { face, own: &own[face * length..][..length], other: &other[face], met };

@@ -2,7 +2,7 @@
 
 use super::block_work::WithFlux;
 use super::face_balance::FaceBalance;
-use super::flux::Faces;
+use super::flux::{Faces, SpecialFaces};
 use crate::lane::Kernel;
 use crate::riemann::{Looks, Riemann};
 use crate::state::UNKNOWNS;
@@ -41,8 +41,10 @@ impl Flux {
 pub(super) trait BlockFlux: std::fmt::Debug + Send + Sync {
     /// See [`Riemann::LOOKS`].
     fn looks(&self) -> Looks;
-    /// The lifted fluxes of the four faces, with what their springs do.
+    /// The lifted fluxes of the four faces.
     fn faces(&self, kernel: Kernel, work: Faces);
+    /// The same of a block with springs or curved cells.
+    fn special_faces(&self, kernel: Kernel, work: SpecialFaces);
     /// What a face adds to the balance of energy.
     fn face_balance(&self, kernel: Kernel, work: FaceBalance);
 }
@@ -53,6 +55,10 @@ impl<R: Riemann> BlockFlux for R {
     }
 
     fn faces(&self, kernel: Kernel, work: Faces) {
+        kernel.run(WithFlux(*self, work));
+    }
+
+    fn special_faces(&self, kernel: Kernel, work: SpecialFaces) {
         kernel.run(WithFlux(*self, work));
     }
 
