@@ -74,7 +74,6 @@ impl Curved {
     }
 
     /// Those of a block; none where all its cells are straight.
-    #[inline]
     pub fn block(&self, block: usize) -> Option<CurvedBlock<'_>> {
         let (m, place) = (self.m, self.place[block]);
         (place != STRAIGHT).then(|| {

