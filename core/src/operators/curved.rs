@@ -96,7 +96,13 @@ impl Curved {
     }
 }
 
-impl CurvedBlock<'_> {
+impl<'a> CurvedBlock<'a> {
+    /// The unit outward normals at the points of the faces, with |dX/ds| there, m.
+    #[inline(always)]
+    pub fn faces(&self) -> &'a [[F8; 3]] {
+        self.faces
+    }
+
     /// The unit outward normal at a point of a face, and |dX/ds| there, m.
     #[inline(always)]
     pub fn at_face<L: Lanes>(&self, face: usize, point: usize) -> ([L; 2], L) {

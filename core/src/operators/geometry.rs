@@ -6,7 +6,7 @@
 
 use super::curved::{Curved, CurvedBlock};
 use super::{Blocks, Line};
-use crate::lane::{F8, LANES, Lane, Lanes, load_array};
+use crate::lane::{F8, LANES, Lane, Lanes, load_array, store_array};
 use crate::mesh::map::{self, CellMap};
 use crate::mesh::{FACES, Mesh};
 
@@ -205,6 +205,27 @@ impl<'a> BlockMetric<'a> {
     pub fn normals<L: Lanes>(&self) -> [[L; 2]; FACES] {
         let metric = self.straight.load::<L>();
         [metric.normal(0), metric.normal(1), metric.normal(2), metric.normal(3)]
+    }
+
+    /// The unit outward normals at the points of the faces, one after the other, and for how many points each is: on straight faces
+    /// one for all `points`, in the `room`. The third number of each is none of them. (No point asks whether its face is curved.)
+    #[inline(always)]
+    pub fn normals_of_points<'r, L: Lanes>(
+        &self,
+        points: usize,
+        room: &'r mut [[F8; 3]; FACES],
+    ) -> (&'r [[F8; 3]], usize)
+    where
+        'a: 'r,
+    {
+        // All of the room, and always: then nobody need clear it.
+        for (room, normal) in room.iter_mut().zip(&self.normals::<L>()) {
+            store_array([normal[0], normal[1], L::zero()], room);
+        }
+        match self.curved {
+            None => (room, points),
+            Some(curved) => (curved.faces(), 1),
+        }
     }
 
     /// The unit outward normal at a point of a face, `straight` being that of a straight face.

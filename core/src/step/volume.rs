@@ -319,13 +319,15 @@ impl LawWork for Speeds<'_> {
 impl Speeds<'_> {
     #[inline(always)]
     fn of_pressure<L: Lanes, M: Material, const W: usize>(&mut self, law: M) -> L {
-        let (m, metric) = (self.traces.len() / W / FACES, self.metric);
-        let normals = metric.normals::<L>();
+        let (m, mut room) = (self.traces.len() / W / FACES, [[F8::ZERO; 3]; FACES]);
+        let (normals, each) = self.metric.normals_of_points::<L>(m, &mut room);
         let mut smallest = Twin(L::splat(f64::INFINITY), L::splat(f64::INFINITY));
         for pair in 0..2 * m {
             let (a, b) = (2 * pair, 2 * pair + 1);
-            let normals =
-                twins(metric.normal_at(normals[a / m], a / m, a % m), metric.normal_at(normals[b / m], b / m, b % m));
+            let normals = twins(
+                load_array::<L, AXES>(&normals[a / each][..AXES]),
+                load_array::<L, AXES>(&normals[b / each][..AXES]),
+            );
             let traces = &mut self.traces.as_chunks_mut::<W>().0[a..a + 2];
             let f = twins(
                 load_array::<L, DEFORMATION>(&traces[0][..DEFORMATION]),
@@ -341,11 +343,11 @@ impl Speeds<'_> {
 
     #[inline(always)]
     fn of_both<L: Lanes, M: Material, const W: usize>(&mut self, law: M) -> L {
-        let (m, metric) = (self.traces.len() / W / FACES, self.metric);
-        let normals = metric.normals::<L>();
+        let (m, mut room) = (self.traces.len() / W / FACES, [[F8::ZERO; 3]; FACES]);
+        let (normals, each) = self.metric.normals_of_points::<L>(m, &mut room);
         let mut smallest = L::splat(f64::INFINITY);
         for point in 0..FACES * m {
-            let normal = metric.normal_at(normals[point / m], point / m, point % m);
+            let normal = load_array::<L, AXES>(&normals[point / each][..AXES]);
             let trace = &mut self.traces.as_chunks_mut::<W>().0[point];
             let f = load_array::<L, DEFORMATION>(&trace[..DEFORMATION]);
             smallest = smallest.min(tensor::det(f));
