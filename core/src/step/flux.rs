@@ -127,19 +127,7 @@ impl Block<'_> {
         let (blocks, m) = (&scheme.operators.blocks, scheme.operators.line.m);
         let (flux, metered) = (scheme.flux.block(), meter.balance.is_some());
         let length = m * width(flux.looks(), metered);
-        let plan = &blocks.plan[self.number];
-        let mut other = [Beyond::Aligned(Aligned(&[])); FACES];
-        for (other, plan) in other.iter_mut().zip(plan) {
-            *other = match plan.side {
-                Side::Aligned(there) => Beyond::Aligned(Aligned(traces.faces(there, 1, length))),
-                Side::Joined { first, second, by } => Beyond::Joined(Joined {
-                    first: traces.around(first, length),
-                    second: traces.around(second, length),
-                    by,
-                }),
-                Side::Gathered(entry) => Beyond::Apart(Apart { traces, from: &blocks.gathered[entry], points: m }),
-            };
-        }
+        let (plan, other) = (&blocks.plan[self.number], self.beyond(traces, length));
         let own = traces.faces(FACES * self.number, FACES, length);
         let (metric, medium) = (self.metric(), self.medium());
         let creep = meter.creep.take();
@@ -182,6 +170,25 @@ impl Block<'_> {
                 meter.phases.book_part(Part::FaceBalance, start);
             }
         }
+    }
+
+    /// The traces across the four faces, each face having `length` numbers.
+    #[inline(always)]
+    fn beyond<'t>(&'t self, traces: &'t Traces, length: usize) -> [Beyond<'t>; FACES] {
+        let (blocks, points) = (&self.scheme.operators.blocks, self.scheme.operators.line.m);
+        let mut other = [Beyond::Aligned(Aligned(&[])); FACES];
+        for (other, plan) in other.iter_mut().zip(&blocks.plan[self.number]) {
+            *other = match plan.side {
+                Side::Aligned(there) => Beyond::Aligned(Aligned(traces.faces(there, 1, length))),
+                Side::Joined { first, second, by } => Beyond::Joined(Joined {
+                    first: traces.around(first, length),
+                    second: traces.around(second, length),
+                    by,
+                }),
+                Side::Gathered(entry) => Beyond::Apart(Apart { traces, from: &blocks.gathered[entry], points }),
+            };
+        }
+        other
     }
 
     /// The lifted numbers of lanes at a boundary or at another material, in `lift`, [point][6]; what passes the boundary into
