@@ -73,7 +73,7 @@ pub struct Operators {
     pub blocks: Blocks,
     /// Metric terms at nodes and faces.
     pub geometry: Geometry,
-    /// What traces of the displacement leave out between unequal cells; none on equal ones and at odd degrees.
+    /// What traces of the displacement leave out between unequal cells; none where all cells are equal.
     pub held_shares: Option<HeldShares>,
     /// Transfer between points and nodes, and derivatives at points; `None` for RK-DGFEM.
     pub points: Option<Points>,
@@ -158,10 +158,11 @@ impl Operators {
     /// The factors of the nodes of a line in the trace of the displacement whose jump is held, at a face of the cell in a lane: [`Line::held`],
     /// with its share between unequal cells.
     pub fn held_ends(&self, block: usize, face: usize, lane: usize) -> Vec<f64> {
-        let share =
-            self.held_shares.as_ref().and_then(|all| all.block(block)).map_or(1.0, |shares| shares[face].0[lane]);
-        let (plain, held) = (&self.line.ends[face % 2], &self.line.held[face % 2]);
-        plain.iter().zip(held).map(|(plain, held)| share.mul_add(held - plain, *plain)).collect()
+        let Some(shares) = self.held_shares.as_ref().and_then(|all| all.block(block)) else {
+            return self.line.held[face % 2].clone();
+        };
+        let (plain, highest) = (&self.line.ends[face % 2], &self.line.highest[face % 2]);
+        plain.iter().zip(highest).map(|(plain, highest)| plain - shares[face].0[lane] * highest).collect()
     }
 
     /// Bytes held by matrices and metric terms.
@@ -200,6 +201,9 @@ pub struct Line {
     pub held: [Vec<f64>; 2],
     /// Lift by those traces: [`Line::held`] / w_k.
     pub held_lift: [Vec<f64>; 2],
+    /// The part of the highest coefficient in the traces between unequal cells, of which a cell leaves out its share
+    /// ([`HeldShares`]): w_k P_N(2 x_k - 1), with the sign of the outward direction where N is odd.
+    pub highest: [Vec<f64>; 2],
 }
 
 impl Line {
@@ -211,13 +215,14 @@ impl Line {
         let weak = (0..m * m).map(|e| w[e % m] * slope[(e % m) * m + e / m] / w[e / m]).collect();
         let ends = [basis.values(0.0), basis.values(1.0)];
         let lift = [0, 1].map(|end: usize| ends[end].iter().zip(w).map(|(l, w)| l / w).collect());
-        let highest = |k: usize| match degree % 2 {
-            1 => 0.0,
-            _ => w[k] * legendre(2.0 * basis.nodes[k] - 1.0).nth(degree).map_or(0.0, |(p, _)| p),
-        };
-        let held = [0, 1].map(|end: usize| (0..m).map(|k| ends[end][k] - highest(k)).collect::<Vec<f64>>());
+        let is_even = degree.is_multiple_of(2);
+        let of = |k: usize| w[k] * legendre(2.0 * basis.nodes[k] - 1.0).nth(degree).map_or(0.0, |(p, _)| p);
+        let signs = [if is_even { 1.0 } else { -1.0 }, 1.0];
+        let highest = signs.map(|sign| (0..m).map(|k| sign * of(k)).collect::<Vec<f64>>());
+        let left_out = |end: usize, k: usize| if is_even { highest[end][k] } else { 0.0 };
+        let held = [0, 1].map(|end: usize| (0..m).map(|k| ends[end][k] - left_out(end, k)).collect::<Vec<f64>>());
         let held_lift = [0, 1].map(|end: usize| held[end].iter().zip(w).map(|(l, w)| l / w).collect());
-        Self { basis, m, slope, weak, ends, lift, held, held_lift }
+        Self { basis, m, slope, weak, ends, lift, held, held_lift, highest }
     }
 
     /// Parent coordinates of the nodes a = i M + j.

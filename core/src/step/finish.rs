@@ -101,13 +101,13 @@ impl Finish<'_> {
         if let Some(torques) = self.torques.as_deref_mut() {
             block.book_torque(self.state, &nodes.lift, torques);
         }
-        let holds = block.scheme.flux.looks() == Looks::Displacement;
-        if let (true, Some(shares)) = (holds, block.held_shares()) {
-            let (lift, held) = (&mut nodes.lift[..], &mut nodes.held[..]);
-            kernel.run(UnequalLift { points: line.m, shares, lift, held });
-        }
         let (metric, nodes) = (block.metric(), &*nodes);
-        let held = holds.then_some(&nodes.held[..]);
+        let mut held = (block.scheme.flux.looks() == Looks::Displacement).then_some(&nodes.held[..]);
+        if let (Some(all), Some(shares)) = (held, block.held_shares()) {
+            let momentum = &mut self.rate[DEFORMATION * line.m * line.m..];
+            kernel.run(UnequalLift { line, shares, held: all, rate: momentum });
+            held = None;
+        }
         let lift = &nodes.lift[..];
         with_terms!(metric, metric => with_nodes!(line.m, M => {
             kernel.run(Lift::<'_, M, _> { line, metric, lift, held, rate: self.rate });
