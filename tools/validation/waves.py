@@ -95,7 +95,7 @@ DISC = Case(
     "order 2; with straight cells the disc is a polygon, whose error holds the order at 2 (degree 2 and 3 alike: 1.0e-3 "
     "on 6 x 6 cells a block, 2.4e-4 on 12 x 12). A parabola differs from a circle by the fourth power of the cell, so "
     "that degree 4 is as good as degree 3. At degree 2 the default flux holds jumps of the displacement by traces that "
-    "fit cells of equal size in a row, which the blocks of the disc are not; the flux `acoustic` does not.",
+    "fit cells whose lines are straight, which those of the disc are not; the flux `acoustic` does not.",
     [
         Line(
             f"error of the velocity after a period, {label} cells a block",
