@@ -347,10 +347,10 @@ fn a_start_from_a_snapshot_of_a_run_with_other_springs_is_said() {
 fn cells_for_which_the_whole_body_waits_are_named() {
     let mut mesh = rectangle([1.0, 0.5], [4, 2]).unwrap();
     assert!(!on(&mesh, "").run("check case.toml").contains("allow a step of"));
-    // The first column is 1/50 as wide as the other ones: 2 of 8 cells.
+    // The first column is 1/50 as wide as the cells that are left as they were (and its h_e = 2 hx hy/(hx + hy) 1/25.5): 2 of 8 cells.
     for node in mesh.nodes.iter_mut().filter(|node| node[0] == 0.25) {
         node[0] = 0.005;
     }
     let said = on(&mesh, "").run("check case.toml");
-    assert!(said.contains("2 cell(s), such as cell ") && said.contains("takes 50 times the steps"), "{said}");
+    assert!(said.contains("2 cell(s), such as cell 1, ") && said.contains("takes 25 times the steps"), "{said}");
 }
