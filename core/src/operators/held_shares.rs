@@ -14,8 +14,10 @@
 //!
 //! - where the two lines make an angle at the face: they see two derivatives, and a^+ - a^- is one order less than the jump;
 //! - where s is so large that the trace would be an extrapolation;
-//! - where what is left out of X itself jumps: a body that turns as a whole has u linear in X. At N = 1 that is so unless the lines are parallel, at N = 2
-//!   where curved lines meet.
+//! - where what is left out of X itself jumps, as where curved lines meet at N = 2: a body that turns as a whole has u linear in X.
+//!
+//! Between two laws s is that of equal cells, since u has a kink there. At N = 1 it is, too: a is the strain then, and what is left out is missed. (Bars of a
+//! thin soft layer between stiff blocks came apart at its faces, and lost 27 % of their energy for .1 %; a cantilever of cells 1 : 3 lost 18 % for 12 %.)
 //!
 //! With w = 0 the traces are those of degree N.
 
@@ -28,7 +30,7 @@ use crate::mesh::{FACES, Mesh};
 const ANGLES: [f64; 2] = [0.2, 0.4];
 /// The largest part of a that a trace leaves out.
 const MOST: f64 = 0.5;
-/// The jump of X, over the length of the shorter cell, up to which w = 1, and from which on w = 0; at N = 1 none but rounding. (A ring of 32 equal
+/// The jump of X, over the length of the shorter cell, up to which w = 1, and from which on w = 0. (A ring of 32 equal
 /// curved cells has 3e-4 at N = 2.)
 const PLACES: [f64; 2] = [1e-3, 2e-3];
 /// Shares that differ by less are those of equal cells: rounding.
@@ -46,9 +48,9 @@ pub struct HeldShares {
 }
 
 impl HeldShares {
-    /// Those of a mesh; none where all cells are equal, and at degree 0, which holds nothing.
+    /// Those of a mesh; none where all cells are equal, and at degrees 0 and 1.
     pub fn of(mesh: &Mesh, blocks: &Blocks, degree: usize) -> Option<Self> {
-        if degree == 0 {
+        if degree < 2 {
             return None;
         }
         let mut out = Self { place: vec![], of: vec![] };
@@ -85,8 +87,8 @@ fn of_equal(degree: usize) -> f64 {
 /// The share of the cell in a lane of a block at a face.
 fn share_of_lane(mesh: &Mesh, blocks: &Blocks, [block, face, lane]: [usize; 3], degree: usize) -> f64 {
     let there = match &blocks.neighbours[block][face][lane] {
-        Neighbour::Cell(there) | Neighbour::Interface(there, _) => there,
-        Neighbour::Boundary(_) | Neighbour::Padding => return of_equal(degree),
+        Neighbour::Cell(there) => there,
+        Neighbour::Interface(..) | Neighbour::Boundary(_) | Neighbour::Padding => return of_equal(degree),
     };
     let own = Across::of(&mesh.map(blocks.cells[block][lane]), face, false, degree);
     let cell = blocks.cells[there.face / FACES][there.lane];
@@ -97,7 +99,7 @@ fn share_of_lane(mesh: &Mesh, blocks: &Blocks, [block, face, lane]: [usize; 3], 
 struct Across {
     /// dX/dxi outward at the middle of the face, m: its length is that of the cell there.
     line: [f64; 2],
-    /// The coefficient a of X itself (xi outward), m, at the ends and the middle of the face. It is 0 for N > 2, and at N = 2 on straight lines.
+    /// The coefficient a of X itself, m, at the ends and the middle of the face. It is 0 for N > 2, and at N = 2 on straight lines.
     of_place: [[f64; 2]; 3],
 }
 
@@ -111,7 +113,6 @@ impl Across {
         let of_place = [0.0, 0.5, 1.0].map(|along| {
             let along = if flip { 1.0 - along } else { along };
             match degree {
-                1 => minus(map::position(map, at(end, along)), map::position(map, at(1.0 - end, along)), 0.5),
                 2 => minus(slope(end, along), slope(1.0 - end, along), 1.0 / 12.0),
                 _ => [0.0; 2],
             }
@@ -136,7 +137,7 @@ fn share(own: &Across, other: &Across, degree: usize) -> f64 {
         of(0).hypot(of(1))
     };
     let jumps = own.of_place.iter().zip(&other.of_place).map(jump).fold(0.0, f64::max);
-    let share = weight * falling(jumps, if degree == 1 { [ROUNDING, 2.0 * ROUNDING] } else { PLACES }) * full;
+    let share = weight * falling(jumps, PLACES) * full;
     if (share - of_equal(degree)).abs() < ROUNDING { of_equal(degree) } else { share }
 }
 
@@ -163,20 +164,27 @@ mod tests {
 
     #[test]
     fn equal_cells_have_the_traces_of_the_line_and_kinks_the_plain_ones() {
-        for degree in 1..=6 {
+        for degree in 2..=6 {
             assert_eq!(shares(0.3, 0.3 + 1e-12, 0.0, degree), [of_equal(degree); 2]);
             assert_eq!(shares(0.3, 0.3, 0.5, degree), [0.0; 2]);
-            assert_eq!(
-                shares(0.3, 0.2, 0.1, degree)[0] == 0.0,
-                degree == 1,
-                "at N = 1 no angle leaves a turned body whole"
-            );
             // However unequal the cells, no trace leaves out more than the largest part (and a rounding).
             for k in [1e-3, 0.1, 0.2, 0.4, 1e3] {
                 let most = MOST * (2 * degree + 1) as f64 * (1.0 + 1e-12);
                 assert!(shares(0.3, k, 0.0, degree).iter().all(|share| share.abs() <= most));
             }
         }
+    }
+
+    #[test]
+    fn degree_1_and_faces_between_two_laws_have_the_traces_of_equal_cells() {
+        let mut mesh = crate::mesh::rectangle([2.0, 1.0], [2, 1]).unwrap();
+        mesh.nodes.iter_mut().filter(|x| x[0] == 1.0).for_each(|x| x[0] = 0.8);
+        let links = crate::mesh::links(&mesh).unwrap();
+        let of = |laws: [usize; 2], degree| HeldShares::of(&mesh, &Blocks::new(&laws, &links), degree);
+        for degree in 2..=6 {
+            assert!(of([0, 0], degree).is_some() && of([0, 1], degree).is_none(), "{degree}");
+        }
+        assert!(of([0, 0], 0).is_none() && of([0, 0], 1).is_none());
     }
 
     /// The trace of the L2 projection of x^(N+1) on the cell from `from` of length `h` at one of its ends, less the share.
@@ -192,7 +200,7 @@ mod tests {
 
     #[test]
     fn held_traces_of_a_polynomial_of_degree_n_plus_1_do_not_jump_between_cells_of_unequal_length() {
-        for degree in 1..=4 {
+        for degree in 2..=5 {
             let line = Line::new(degree);
             let (own, other) = (0.1, 0.13);
             let jump = |[s, t]: [f64; 2]| trace(&line, [0.2, other], 0, t) - trace(&line, [0.2 - own, own], 1, s);
