@@ -186,6 +186,6 @@ fn a_run_on_curved_cells_and_its_mesh_are_read_as_they_are() {
     python::run(&python, "tests/python/run_folder.py", [&run]);
     python::run_dolfinx("tests/python/run_folder.py", [&run]);
     let mesh = run.join("ring.xdmf");
-    dgmpm(&["mesh", "meshes/validation/ring.msh", "--out", mesh.to_str().unwrap()]);
+    dgmpm(&["mesh", "meshes/validation/ring.msh", "--force", "--out", mesh.to_str().unwrap()]);
     python::run_dolfinx("tests/python/dolfinx_curved.py", [&mesh]);
 }

@@ -9,7 +9,7 @@
 //! that `exp(-(x/a)^2)` would grow, and has no functions of three arguments; `exmex` is the oracle of the tests.
 //!
 //! ```
-//! let pulse = dgmpm::parts::expression::Expression::compile("-1e8*step(1e-4 - t)*exp(-(x/0.1)^2)").unwrap();
+//! let pulse = dgmpm_core::expression::Expression::compile("-1e8*step(1e-4 - t)*exp(-(x/0.1)^2)").unwrap();
 //! assert_eq!(pulse.eval([0.0, 0.0], 5e-5), -1e8);
 //! assert_eq!(pulse.eval([0.0, 0.0], 2e-4), 0.0);
 //! ```
