@@ -9,8 +9,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// Pairs are vectors of the compiler: kernels written out number by number, eight of them, take it several times as long
 /// to compile.
 ///
-/// Operations are calls on x86_64 without the feature `kernel-portable`, and in unit tests: written out, they take as long to compile as all other
-/// paths together, and no x86_64 since 2013 takes this path, but a few cheap ones.
+/// Operations are calls on x86_64 without the feature `kernel-portable`, and in unit tests. Inlined, they took 38 % of the time of LLVM, more
+/// than any other path, and a processor with AVX2 never takes this path. As calls they are five times slower.
 #[derive(Debug, Clone, Copy)]
 pub struct Portable([Pair; 4]);
 

@@ -16,8 +16,9 @@
 //! - where s is so large that the trace would be an extrapolation;
 //! - where what is left out of X itself jumps, as where curved lines meet at N = 2: a body that turns as a whole has u linear in X.
 //!
-//! Between two laws s is that of equal cells, since u has a kink there. At N = 1 it is, too: a is the strain then, and what is left out is missed. (Bars of a
-//! thin soft layer between stiff blocks came apart at its faces, and lost 27 % of their energy for .1 %; a cantilever of cells 1 : 3 lost 18 % for 12 %.)
+//! Between two laws s is that of equal cells, since u has a kink there. So it is at N = 1: a is the strain there, and a trace without a part
+//! of the strain holds too little. With shares at N = 1, a bar with a thin soft layer came apart at the faces of the layer, and lost 27 % of
+//! its energy in place of .1 %; a cantilever of cells 1 : 3 lost 18 % in place of 12 %.
 //!
 //! With w = 0 the traces are those of degree N.
 
