@@ -24,6 +24,15 @@ pub(super) struct Sides<'a> {
     pub met: Option<Met<'a>>,
 }
 
+impl<'a> Sides<'a> {
+    /// The own numbers of a point of a face that has `points`.
+    #[inline(always)]
+    pub fn of_point(&self, point: usize, points: usize) -> &'a [F8] {
+        let width = self.own.len() / points;
+        &self.own[point * width..][..width]
+    }
+}
+
 /// What a face between cells adds to the balance of the block. The fluxes are found once more: without the balance they never come to
 /// memory.
 pub(super) struct FaceBalance<'a, 'b> {
@@ -87,7 +96,8 @@ impl FaceBalance<'_, '_> {
                         let stored = &mut stored.0[lane];
                         *stored = 0.0;
                         let pulling = pull.map(|pull| Pulling::Still(pull, stored));
-                        let between = block.flux_of_lane([face, point, lane], own, sides.other, &mut [], pulling);
+                        let between =
+                            block.single_face(face, lane).map(|face| face.flux(sides, point, &mut [], pulling));
                         between.iter().for_each(|f| (0..UNKNOWNS).for_each(|k| flux[k].0[lane] = f[k]));
                     }
                     Neighbour::Cell(_) | Neighbour::Padding => {}

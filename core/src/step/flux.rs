@@ -5,23 +5,22 @@ mod special;
 pub(super) use special::SpecialFaces;
 
 use super::across::{Aligned, Apart, Beyond, Joined, LaneByLane, Other, Traces};
-use super::balance::{BlockBalance, boundary_loss, boundary_power};
+use super::balance::BlockBalance;
 use super::block::Block;
 use super::block_work::FluxWork;
-use super::creep::{Creep, Pulling, Springs};
+use super::creep::{Creep, Pull, Springs};
 use super::face_balance::{FaceBalance, Sides};
 use super::meeting_flux::Met;
 use super::meetings::Meetings;
 use super::outside::{ExternalWork, FaceForces};
 use super::phase::{Part, Ticks};
-use super::trace::{gap, held, trace_of, turn, turned, with_width};
+use super::trace::{held, trace_of, turn, turned, with_width};
 use super::volume::{Arrays, width};
-use crate::boundary::{FacePoint, Moment};
 use crate::built;
-use crate::lane::{F8, LANES, Lanes, load_array, store_array};
-use crate::mesh::{FACES, map};
+use crate::lane::{F8, Lanes, load_array, store_array};
+use crate::mesh::FACES;
 use crate::operators::{Metric, Neighbour, Side};
-use crate::riemann::{Looks, Medium, Riemann, Trace, hold, interface};
+use crate::riemann::{Looks, Medium, Riemann};
 use crate::state::UNKNOWNS;
 use crate::tensor::DEFORMATION;
 
@@ -120,6 +119,22 @@ impl Meter<'_> {
     }
 }
 
+/// The traces of the faces of a block.
+struct SidesOfFaces<'a> {
+    /// [face][point][width].
+    own: &'a [F8],
+    other: &'a [Beyond<'a>; FACES],
+    met: Option<Met<'a>>,
+}
+
+impl<'a> SidesOfFaces<'a> {
+    /// Those of a face.
+    fn of(&self, face: usize) -> Sides<'a> {
+        let length = self.own.len() / FACES;
+        Sides { face, own: &self.own[face * length..][..length], other: &self.other[face], met: self.met }
+    }
+}
+
 impl Block<'_> {
     /// Lifted numbers of all faces into `nodes.lift`; the energy that they pass into `meter`.
     pub fn lifted_fluxes(&self, traces: &Traces, meetings: Option<&Meetings>, nodes: &mut Arrays, mut meter: Meter) {
@@ -131,7 +146,8 @@ impl Block<'_> {
         let own = traces.faces(FACES * self.number, FACES, length);
         let (metric, medium) = (self.metric(), self.medium());
         let creep = meter.creep.take();
-        let mut springs = creep.and_then(|creep| Springs::new(self, creep, &mut nodes.creep));
+        let creeping = &mut nodes.creep;
+        let mut springs = creep.and_then(|creep| Springs::new(self, creep, creeping));
         let (pull, turning) = (springs.as_ref().map(|own| own.pull), self.turning());
         let faces = Faces {
             metered,
@@ -150,25 +166,50 @@ impl Block<'_> {
         } else {
             flux.faces(scheme.kernel, faces);
         }
+        let met = meetings.filter(|_| built::CONTACT).map(|meetings| Met { meetings, traces });
+        let sides = SidesOfFaces { own, other: &other, met };
+        if plan.iter().any(|face| face.has_boundary_or_interface) {
+            self.single_faces(&sides, &mut nodes.lift, &mut nodes.held, springs, &mut meter);
+        }
+        if built::BALANCE && metered {
+            self.balance_of_faces(&sides, pull, &mut meter);
+        }
+    }
+
+    /// Lifted numbers of the faces at a boundary or at another material. By itself, as [`Block::balance_of_faces`], so that blocks inside the
+    /// body have no instruction of it.
+    #[inline(never)]
+    fn single_faces(
+        &self,
+        sides: &SidesOfFaces,
+        lift: &mut [F8],
+        held: &mut [F8],
+        mut springs: Option<Springs>,
+        meter: &mut Meter,
+    ) {
+        let (plan, m) = (&self.scheme.operators.blocks.plan[self.number], self.scheme.operators.line.m);
+        for face in (0..FACES).filter(|face| plan[*face].has_boundary_or_interface) {
+            let held = &mut held[2 * m * face..2 * m * (face + 1)];
+            let lift = &mut lift[UNKNOWNS * m * face..UNKNOWNS * m * (face + 1)];
+            let start = meter.phases.start();
+            let before = if built::FORCES { meter.work_so_far() } else { None };
+            self.single_fluxes(sides.of(face), lift, held, springs.as_mut(), meter);
+            if let Some(before) = before {
+                self.forces_at_face(face, lift, before, meter);
+            }
+            meter.phases.book_part(Part::Conditions, start);
+        }
+    }
+
+    /// What all faces add to the balance.
+    #[inline(never)]
+    fn balance_of_faces(&self, sides: &SidesOfFaces, pull: Option<Pull>, meter: &mut Meter) {
+        let (scheme, Some(balance)) = (self.scheme, &mut meter.balance) else { return };
         for face in 0..FACES {
-            let met = meetings.filter(|_| built::CONTACT).map(|meetings| Met { meetings, traces });
-            let sides = Sides { face, own: &own[face * length..][..length], other: &other[face], met };
-            if plan[face].has_boundary_or_interface {
-                let held = &mut nodes.held[2 * m * face..2 * m * (face + 1)];
-                let lift = &mut nodes.lift[UNKNOWNS * m * face..UNKNOWNS * m * (face + 1)];
-                let start = meter.phases.start();
-                let before = if built::FORCES { meter.work_so_far() } else { None };
-                self.boundary_and_interface_lanes(sides, lift, held, springs.as_mut(), &mut meter);
-                if let Some(before) = before {
-                    self.forces_at_face(face, lift, before, &mut meter);
-                }
-                meter.phases.book_part(Part::Conditions, start);
-            }
-            if let (true, Some(balance)) = (built::BALANCE, &mut meter.balance) {
-                let start = meter.phases.start();
-                flux.face_balance(scheme.kernel, FaceBalance { block: *self, sides, pull, balance });
-                meter.phases.book_part(Part::FaceBalance, start);
-            }
+            let start = meter.phases.start();
+            let sides = sides.of(face);
+            scheme.flux.block().face_balance(scheme.kernel, FaceBalance { block: *self, sides, pull, balance });
+            meter.phases.book_part(Part::FaceBalance, start);
         }
     }
 
@@ -191,57 +232,6 @@ impl Block<'_> {
         other
     }
 
-    /// The lifted numbers of lanes at a boundary or at another material, in `lift`, [point][6]; what passes the boundary into
-    /// `meter`.
-    fn boundary_and_interface_lanes(
-        &self,
-        sides: Sides,
-        lift: &mut [F8],
-        held: &mut [F8],
-        mut springs: Option<&mut Springs>,
-        meter: &mut Meter,
-    ) {
-        let line = &self.scheme.operators.line;
-        let (face, width) = (sides.face, sides.own.len() / line.m);
-        let factor = self.factor();
-        let whole = if built::OBSTACLES && self.scheme.sees_faces {
-            self.fluxes_of_whole_faces(face, sides.own, meter.memory)
-        } else {
-            vec![]
-        };
-        for (point, (own, lift)) in sides.own.chunks_exact(width).zip(lift.as_chunks_mut::<UNKNOWNS>().0).enumerate() {
-            for lane in 0..LANES {
-                let memory = &mut *meter.memory;
-                let neighbour = &self.scheme.operators.blocks.neighbours[self.number][face][lane];
-                if let (Some(springs), Neighbour::Boundary(_) | Neighbour::Interface(..)) = (&mut springs, neighbour) {
-                    springs.keep(line.m * face + point, lane);
-                }
-                let met = sides.met.and_then(|met| self.flux_of_meeting(met, [face, point, lane], own, memory));
-                let met = met.or_else(|| whole.iter().find(|whole| whole.0 == lane).map(|whole| whole.1[point]));
-                let flux = met.or_else(|| {
-                    let springs = springs.as_deref_mut().map(Pulling::Moving);
-                    self.flux_of_lane([face, point, lane], own, sides.other, memory, springs)
-                });
-                let Some(flux) = flux else { continue };
-                let between = self.held_between(face, point, lane, own, sides.other);
-                (0..2).for_each(|k| held[2 * point + k].0[lane] = between[k]);
-                let (normal, length) = self.metric().at_face_of(lane, face, point);
-                for (k, flux) in flux.iter().enumerate() {
-                    let own = if k < DEFORMATION { own[DEFORMATION + k / 2].0[lane] * normal[k % 2] } else { 0.0 };
-                    lift[k].0[lane] = (flux + own) * length;
-                }
-                if let (Some(external), Neighbour::Boundary(_)) = (&mut meter.external, neighbour) {
-                    let weight = line.basis.weights[point] * length * factor;
-                    external.boundary.0[lane] += weight * boundary_power(&flux, normal);
-                    if let (true, Some(balance)) = (built::BALANCE, &mut meter.balance) {
-                        let stored = springs.as_ref().map_or(0.0, |springs| springs.stored);
-                        balance.boundary.0[lane] += weight * (boundary_loss(own, &flux, normal, lane) - stored);
-                    }
-                }
-            }
-        }
-    }
-
     /// Books the forces at a face, from its lifted numbers and the work on the block before it: once a face, so that where nobody asks
     /// for forces no boundary point knows of them.
     fn forces_at_face(&self, face: usize, lift: &[F8], before: F8, meter: &mut Meter) {
@@ -256,79 +246,5 @@ impl Block<'_> {
                 axes.for_each(|(axis, flux)| forces.impulse[face][axis].0[lane] -= weight * factor * flux.0[lane]);
             }
         }
-    }
-
-    /// The flux of a lane at a boundary or at another material, from the `own` numbers at a point and the traces of the other
-    /// side, each with its own normal; none elsewhere.
-    pub(super) fn flux_of_lane(
-        &self,
-        [face, point, lane]: [usize; 3],
-        own: &[F8],
-        other: &Beyond,
-        memory: &mut [f64],
-        springs: Option<Pulling>,
-    ) -> Option<[f64; UNKNOWNS]> {
-        let neighbour = &self.scheme.operators.blocks.neighbours[self.number][face][lane];
-        if matches!(neighbour, Neighbour::Cell(_) | Neighbour::Padding) {
-            return None;
-        }
-        let law = self.law();
-        let at = self.face_point(face, point, lane);
-        let trace = |x: &dyn Fn(usize) -> f64, sign: f64, law: &super::Law| {
-            let f = [x(0), x(1), x(2), x(3)];
-            let c = if self.scheme.flux.looks() == Looks::Shear { [x(8), x(9)] } else { law.speeds(f, at.normal) };
-            Trace { f, v: [x(4), x(5)], t: [sign * x(6), sign * x(7)], c }
-        };
-        let minus = trace(&|k| own[k].0[lane], 1.0, law);
-        match *neighbour {
-            Neighbour::Boundary(group) => {
-                let memory = self.scheme.boundary_memory.of_point(memory, [self.number, face, lane, point]);
-                let when = Moment { times: self.stage.times, dt: self.factor() };
-                let condition = &self.scheme.boundaries[group];
-                let mut flux = |inside: &Trace<f64>| condition.flux(inside, &at, &when, memory);
-                Some(match springs {
-                    None => flux(&minus),
-                    Some(springs) => self.pulled_at_boundary([face, point, lane], group, &at, &minus, springs, flux),
-                })
-            }
-            Neighbour::Interface(_, material) => {
-                let beyond = &self.scheme.laws[material];
-                let plus = trace(&|k| other.number(point, k, own.len(), lane), -1.0, beyond);
-                let mut flux = interface(&minus, &plus, at.normal, [law.density(), beyond.density()]);
-                if let Some(springs) = springs {
-                    self.pull_between([face, point, lane], material, [&minus, &plus], springs, &mut flux);
-                }
-                Some(flux)
-            }
-            Neighbour::Cell(_) | Neighbour::Padding => None,
-        }
-    }
-
-    /// What is held in a lane at a boundary, nothing, or between two laws.
-    fn held_between(&self, face: usize, point: usize, lane: usize, own: &[F8], other: &Beyond) -> [f64; 2] {
-        let neighbour = &self.scheme.operators.blocks.neighbours[self.number][face][lane];
-        match (self.scheme.flux.looks(), neighbour) {
-            (Looks::Displacement, Neighbour::Interface(_, material)) => {
-                let there: [f64; 11] = std::array::from_fn(|k| other.number(point, k, own.len(), lane));
-                let here: [f64; 11] = std::array::from_fn(|k| own[k].0[lane]);
-                let densities = [self.law().density(), self.scheme.laws[*material].density()];
-                hold(
-                    gap(&here, &there),
-                    [densities[0] * (here[8] * here[8]), densities[1] * (there[8] * there[8])],
-                    1.0,
-                )
-            }
-            _ => [0.0; 2],
-        }
-    }
-
-    pub(super) fn face_point(&self, face: usize, point: usize, lane: usize) -> FacePoint {
-        let geometry = &self.scheme.operators.geometry;
-        let along = self.scheme.operators.line.basis.nodes[point];
-        let end = (face % 2) as f64;
-        let xi = if face < 2 { [end, along] } else { [along, end] };
-        let x = map::position(&geometry.map_of(self.number, lane), xi);
-        let (normal, _) = self.metric().at_face_of(lane, face, point);
-        FacePoint { x, normal, medium: self.medium() }
     }
 }

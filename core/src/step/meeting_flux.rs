@@ -4,6 +4,7 @@ use super::across::Traces;
 use super::block::Block;
 use super::meetings::Meetings;
 use super::segments::{Point, Segment};
+use super::single_faces::SingleFace;
 use crate::contact::{Meeting, Side};
 use crate::lane::F8;
 use crate::mesh::FACES;
@@ -37,10 +38,12 @@ impl Block<'_> {
     pub(super) fn flux_of_meeting(
         &self,
         met: Met,
-        [face, point, lane]: [usize; 3],
+        of_cell: &SingleFace,
         own: &[F8],
+        point: usize,
         memory: &mut [f64],
     ) -> Option<[f64; UNKNOWNS]> {
+        let (face, lane) = (of_cell.face, of_cell.lane);
         let contacts = self.scheme.contacts.as_ref()?;
         let number = contacts.number(FACES * self.number + face, lane)?;
         let met_by = &met.meetings.of_face[number];
@@ -60,8 +63,8 @@ impl Block<'_> {
                 shares.push((number, side, [0, 1].map(|i| t[i] + q[i])));
             }
         }
-        let at = self.face_point(face, point, lane);
-        let (_, length) = self.metric().at_face_of(lane, face, point);
+        let at = of_cell.point(point);
+        let (_, length) = of_cell.normal_and_length(point);
         let per_length = |force: f64| force / (line.basis.weights[point] * length);
         let (t, push) = (force.map(per_length), push.map(per_length));
         let x = |k: usize| own[k].0[lane];

@@ -57,6 +57,7 @@ mod segments;
 mod shape;
 mod shared;
 mod shares;
+mod single_faces;
 mod sources;
 mod springs;
 mod stage;

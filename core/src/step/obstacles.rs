@@ -129,7 +129,7 @@ impl Obstacles {
 impl Face {
     fn new(scheme: &Scheme, group: usize, place: [usize; 3]) -> Self {
         let [number, face, lane] = place;
-        let (geometry, line) = (&scheme.operators.geometry, &scheme.operators.line);
+        let geometry = &scheme.operators.geometry;
         let stage = Stage { number: 0, times: &[], row: &[], dt: 0.0, elapsed: 0.0, obstacles: None };
         let block = Block { scheme, stage: &stage, number };
         let map = geometry.map_of(number, lane);
@@ -139,7 +139,7 @@ impl Face {
             ends: [0.0, 1.0].map(|s| map::position(&map, on_face(face, s))),
             bulge: map.bulge.map_or([0.0; 2], |bulge| bulge[face]),
             h: geometry.blocks[number].lane(lane).h,
-            points: (0..line.m).map(|point| block.face_point(face, point, lane)).collect(),
+            points: block.face_points(face, lane),
             next: [None; 2],
             beyond: [None; 2],
         }

@@ -30,7 +30,7 @@ impl Block<'_> {
             return None;
         };
         let width = own.len() / line.m;
-        let points: Vec<_> = (0..line.m).map(|point| self.face_point(face, point, lane)).collect();
+        let points = self.face_points(face, lane);
         let of = |(at, own): (&FacePoint, &[F8])| {
             let x = |k: usize| own[k].0[lane];
             let f = [x(0), x(1), x(2), x(3)];

@@ -1,0 +1,228 @@
+//! Fluxes of faces at a boundary or at another material: cell by cell, not 8 at once.
+
+use super::balance::{BlockBalance, boundary_loss, boundary_power};
+use super::block::Block;
+use super::creep::{Pulling, Springs};
+use super::face_balance::Sides;
+use super::flux::Meter;
+use super::trace::gap;
+use crate::boundary::{FacePoint, Moment};
+use crate::built;
+use crate::lane::{F8, LANES};
+use crate::mesh::map::{self, CellMap};
+use crate::operators::{BlockMetric, Neighbour};
+use crate::riemann::{Looks, Medium, Trace, hold, interface};
+use crate::state::UNKNOWNS;
+use crate::tensor::DEFORMATION;
+
+/// A face of one cell at a boundary or at another material: what its points share.
+pub(super) struct SingleFace<'a> {
+    block: Block<'a>,
+    /// The number of the face in its cell, and the lane of the cell.
+    pub face: usize,
+    pub lane: usize,
+    /// What is beyond.
+    pub neighbour: Neighbour,
+    /// Unit outward normal and length (m) of a straight face; that of its chord where it is curved.
+    straight: ([f64; 2], f64),
+    metric: BlockMetric<'a>,
+    map: CellMap,
+    medium: Medium<f64>,
+}
+
+impl SingleFace<'_> {
+    /// The unit outward normal at a point, and the length of the face there, m.
+    #[inline(always)]
+    pub fn normal_and_length(&self, point: usize) -> ([f64; 2], f64) {
+        if self.metric.curved.is_some() { self.metric.at_face_of(self.lane, self.face, point) } else { self.straight }
+    }
+
+    /// A point of the face.
+    #[inline(always)]
+    pub fn point(&self, point: usize) -> FacePoint {
+        let along = self.block.scheme.operators.line.basis.nodes[point];
+        let end = (self.face % 2) as f64;
+        let xi = if self.face < 2 { [end, along] } else { [along, end] };
+        FacePoint { x: map::position(&self.map, xi), normal: self.normal_and_length(point).0, medium: self.medium }
+    }
+
+    /// The flux at a point, from the traces of both sides, each with its own normal.
+    ///
+    /// Not inlined, nor are other functions here that are called once a face or a point: else what a program was built with decided
+    /// how, and a run without an effect had other instructions than one by a program without it.
+    #[inline(never)]
+    pub fn flux(&self, sides: Sides, point: usize, memory: &mut [f64], springs: Option<Pulling>) -> [f64; UNKNOWNS] {
+        let (block, at, lane) = (self.block, self.point(point), self.lane);
+        let (scheme, law) = (block.scheme, block.law());
+        let own = sides.of_point(point, scheme.operators.line.m);
+        let trace = |x: &dyn Fn(usize) -> f64, sign: f64, law: &super::Law| {
+            let f = [x(0), x(1), x(2), x(3)];
+            let c = if scheme.flux.looks() == Looks::Shear { [x(8), x(9)] } else { law.speeds(f, at.normal) };
+            Trace { f, v: [x(4), x(5)], t: [sign * x(6), sign * x(7)], c }
+        };
+        let minus = trace(&|k| own[k].0[lane], 1.0, law);
+        match self.neighbour {
+            Neighbour::Boundary(group) => {
+                let memory = scheme.boundary_memory.of_point(memory, [block.number, self.face, lane, point]);
+                let when = Moment { times: block.stage.times, dt: block.factor() };
+                let condition = &scheme.boundaries[group];
+                let mut flux = |inside: &Trace<f64>| condition.flux(inside, &at, &when, memory);
+                match springs {
+                    None => flux(&minus),
+                    Some(springs) => {
+                        block.pulled_at_boundary([self.face, point, lane], group, &at, &minus, springs, flux)
+                    }
+                }
+            }
+            Neighbour::Interface(_, material) => {
+                let beyond = &scheme.laws[material];
+                let plus = trace(&|k| sides.other.number(point, k, own.len(), lane), -1.0, beyond);
+                let mut flux = interface(&minus, &plus, at.normal, [law.density(), beyond.density()]);
+                if let Some(springs) = springs {
+                    block.pull_between([self.face, point, lane], material, [&minus, &plus], springs, &mut flux);
+                }
+                flux
+            }
+            Neighbour::Cell(_) | Neighbour::Padding => [0.0; UNKNOWNS],
+        }
+    }
+
+    /// The lifted numbers at a point.
+    #[inline(always)]
+    fn lift(&self, own: &[F8], point: usize, flux: &[f64; UNKNOWNS], lift: &mut [F8; UNKNOWNS]) {
+        let (normal, length) = self.normal_and_length(point);
+        for (k, flux) in flux.iter().enumerate() {
+            let own = if k < DEFORMATION { own[DEFORMATION + k / 2].0[self.lane] * normal[k % 2] } else { 0.0 };
+            lift[k].0[self.lane] = (flux + own) * length;
+        }
+    }
+
+    /// Books what the flux at a point of the boundary gives to the body.
+    #[inline(always)]
+    fn book_work(&self, point: usize, flux: &[f64; UNKNOWNS], meter: &mut Meter) {
+        let Some(external) = &mut meter.external else { return };
+        let (normal, length) = self.normal_and_length(point);
+        let weight = self.block.scheme.operators.line.basis.weights[point] * length * self.block.factor();
+        external.boundary.0[self.lane] += weight * boundary_power(flux, normal);
+    }
+
+    /// Books what a condition loses at a point; `stored`: what its spring stores, W/m^2.
+    #[inline(never)]
+    fn book_loss(&self, own: &[F8], point: usize, flux: &[f64; UNKNOWNS], stored: f64, balance: &mut BlockBalance) {
+        let (normal, length) = self.normal_and_length(point);
+        let weight = self.block.scheme.operators.line.basis.weights[point] * length * self.block.factor();
+        balance.boundary.0[self.lane] += weight * (boundary_loss(own, flux, normal, self.lane) - stored);
+    }
+
+    /// What is held at a point: nothing at a boundary, and by fluxes that do not look at the displacement.
+    #[inline(always)]
+    fn held(&self, sides: Sides, point: usize) -> [f64; 2] {
+        match (self.block.scheme.flux.looks(), self.neighbour) {
+            (Looks::Displacement, Neighbour::Interface(_, material)) => self.held_between(material, sides, point),
+            _ => [0.0; 2],
+        }
+    }
+
+    /// The same between two laws.
+    #[inline(never)]
+    fn held_between(&self, material: usize, sides: Sides, point: usize) -> [f64; 2] {
+        let (scheme, law) = (self.block.scheme, self.block.law());
+        let own = sides.of_point(point, scheme.operators.line.m);
+        let there: [f64; 11] = std::array::from_fn(|k| sides.other.number(point, k, own.len(), self.lane));
+        let here: [f64; 11] = std::array::from_fn(|k| own[k].0[self.lane]);
+        let densities = [law.density(), scheme.laws[material].density()];
+        hold(gap(&here, &there), [densities[0] * (here[8] * here[8]), densities[1] * (there[8] * there[8])], 1.0)
+    }
+}
+
+impl<'a> Block<'a> {
+    /// The face of the cell in a lane; none between cells of one material.
+    #[inline(always)]
+    pub(super) fn single_face(&self, face: usize, lane: usize) -> Option<SingleFace<'a>> {
+        let neighbour = self.scheme.operators.blocks.neighbours[self.number][face][lane];
+        if matches!(neighbour, Neighbour::Cell(_) | Neighbour::Padding) {
+            return None;
+        }
+        let metric = self.metric();
+        let straight = metric.straight.lane(lane);
+        Some(SingleFace {
+            block: *self,
+            face,
+            lane,
+            neighbour,
+            straight: (straight.normal(face), straight.length(face)),
+            metric,
+            map: self.scheme.operators.geometry.map_of(self.number, lane),
+            medium: self.medium(),
+        })
+    }
+
+    /// The points of a face of the cell in a lane; none between cells of one material.
+    pub(super) fn face_points(&self, face: usize, lane: usize) -> Vec<FacePoint> {
+        let points = 0..self.scheme.operators.line.m;
+        self.single_face(face, lane).map_or_else(Vec::new, |face| points.map(|point| face.point(point)).collect())
+    }
+
+    /// The lifted numbers of lanes at a boundary or at another material, in `lift`, [point][6]; what passes the boundary into
+    /// `meter`.
+    #[inline(never)]
+    pub(super) fn single_fluxes(
+        &self,
+        sides: Sides,
+        lift: &mut [F8],
+        held: &mut [F8],
+        mut springs: Option<&mut Springs>,
+        meter: &mut Meter,
+    ) {
+        let whole = if built::OBSTACLES && self.scheme.sees_faces {
+            self.fluxes_of_whole_faces(sides.face, sides.own, meter.memory)
+        } else {
+            vec![]
+        };
+        let m = self.scheme.operators.line.m;
+        for lane in 0..LANES {
+            let Some(face) = self.single_face(sides.face, lane) else { continue };
+            let whole = whole.iter().find(|whole| whole.0 == lane).map(|whole| &whole.1);
+            let is_plain = whole.is_none() && sides.met.is_none() && springs.is_none();
+            for (point, lift) in lift.as_chunks_mut::<UNKNOWNS>().0.iter_mut().enumerate() {
+                let own = sides.of_point(point, m);
+                let flux = if is_plain {
+                    face.flux(sides, point, meter.memory, None)
+                } else {
+                    let of_whole = whole.map(|whole| whole[point]);
+                    self.special_flux(&face, sides, point, of_whole, springs.as_deref_mut(), meter.memory)
+                };
+                let between = face.held(sides, point);
+                (0..2).for_each(|k| held[2 * point + k].0[lane] = between[k]);
+                face.lift(own, point, &flux, lift);
+                if matches!(face.neighbour, Neighbour::Boundary(_)) {
+                    face.book_work(point, &flux, meter);
+                    if let (true, Some(balance)) = (built::BALANCE, &mut meter.balance) {
+                        let stored = springs.as_ref().map_or(0.0, |springs| springs.stored);
+                        face.book_loss(own, point, &flux, stored, balance);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The flux at a point that may have springs, may meet other faces, or whose condition may have found it for all points of the face.
+    #[inline(never)]
+    fn special_flux(
+        &self,
+        face: &SingleFace,
+        sides: Sides,
+        point: usize,
+        of_whole: Option<[f64; UNKNOWNS]>,
+        mut springs: Option<&mut Springs>,
+        memory: &mut [f64],
+    ) -> [f64; UNKNOWNS] {
+        let m = self.scheme.operators.line.m;
+        if let Some(springs) = &mut springs {
+            springs.keep(m * sides.face + point, face.lane);
+        }
+        let own = sides.of_point(point, m);
+        let met = sides.met.and_then(|met| self.flux_of_meeting(met, face, own, point, memory));
+        met.or(of_whole).unwrap_or_else(|| face.flux(sides, point, memory, springs.map(Pulling::Moving)))
+    }
+}
