@@ -65,7 +65,7 @@ fn paper(degree: usize, time_degree: usize) -> Method {
 fn scheme(method: Method, degree: usize) -> Result<Scheme, Box<dyn std::error::Error>> {
     let mesh = rectangle([1.0, 1.0], [CELLS, CELLS])?;
     let sampling = matches!(method, Method::Ader { .. }).then_some(Sampling::Nodes);
-    let needs = Needs { degree, sampling, curl_free: degree > 0 };
+    let needs = Needs { degree, sampling, curl_free: degree > 0, held: true };
     let operators = Operators::build(&mesh, &links(&mesh)?, &vec![0; mesh.cells.len()], &needs)?;
     let alpha = if degree >= 4 { 6.0 } else { 3.0 };
     let laws = vec![Law::from(NeoHookean::new(1.0, 0.3, 1.0))];

@@ -14,7 +14,7 @@ fn main() -> Result<()> {
     let mesh = rectangle([1.0, 1.0], [10, 10])?;
     let cells = mesh.cells.len();
     let cloud: Cloud = seed::seed(seed::Layout::Midpoints, DEGREE + 1, cells);
-    let needs = Needs { degree: DEGREE, sampling: Some(Sampling::Cloud(&cloud)), curl_free: true };
+    let needs = Needs { degree: DEGREE, sampling: Some(Sampling::Cloud(&cloud)), curl_free: true, held: true };
     let operators = Operators::build(&mesh, &links(&mesh)?, &vec![0; cells], &needs)?;
 
     // The groups of a rectangle are left, right, bottom, top.

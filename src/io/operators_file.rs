@@ -158,7 +158,7 @@ mod tests {
     }
 
     fn needs(cloud: &Cloud) -> Needs<'_> {
-        Needs { degree: 2, sampling: Some(Sampling::Cloud(cloud)), curl_free: true }
+        Needs { degree: 2, sampling: Some(Sampling::Cloud(cloud)), curl_free: true, held: true }
     }
 
     fn build(case: &Case, needs: &Needs) -> Stored {

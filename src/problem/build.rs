@@ -113,7 +113,8 @@ impl Scene {
         });
         // Constants have no curl.
         let curl_free = self.scheme.degree > 0 && self.curl.build().relax.is_some();
-        Needs { degree: self.scheme.degree, sampling, curl_free }
+        let held = (self.scheme.flux.build().make)().looks() == Looks::Displacement;
+        Needs { degree: self.scheme.degree, sampling, curl_free, held }
     }
 
     /// Time integration.

@@ -57,6 +57,8 @@ impl Wanted {
         // One copy of each class while they are built, one in blocks.
         let if_own = |own: bool, numbers: f64| if own { 2.0 * numbers } else { 0.0 };
         let own = if_own(self.own_points, 2.0 * n * np + 2.0 * np * np) + if_own(self.own_shape, 2.0 * n * n);
+        // Traces of the displacement of unequal cells.
+        let own = own + if_own(self.own_shape, 4.0 * m * n);
         self.cells as f64 * (MESH + 8.0 * (unknowns + geometry + own))
     }
 

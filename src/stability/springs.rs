@@ -161,8 +161,6 @@ impl<'a> Faces<'a> {
             return None;
         };
         let (there, other) = (operators.blocks.cells[across.face / FACES][across.lane], across.face % FACES);
-        let held =
-            [operators.held_ends(block, face, lane), operators.held_ends(across.face / FACES, other, across.lane)];
         let (mut own, mut beyond) = (vec![], vec![]);
         for point in 0..operators.line.m {
             let (normal, _) = operators.geometry.of(block).at_face_of(lane, face, point);
@@ -170,8 +168,9 @@ impl<'a> Faces<'a> {
             let moduli = [self.modulus(cell, face, point, normal), self.modulus(there, other, opposite, normal)];
             let [stiffness, _] = hold([-1.0, 0.0], moduli, 1.0);
             let factor = (operators.line.basis.weights[point] * stiffness).sqrt() * self.problem.h;
-            own.push(self.at_nodes(&held[0], face, point, factor));
-            beyond.push(self.at_nodes(&held[1], other, opposite, factor));
+            let of = |held: Vec<f64>| held.iter().map(|held| factor * held).collect();
+            own.push(of(operators.held_trace(block, face, lane, point)));
+            beyond.push(of(operators.held_trace(across.face / FACES, other, across.lane, opposite)));
         }
         Some((there, Sides { own, beyond }))
     }

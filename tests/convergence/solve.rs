@@ -89,7 +89,7 @@ pub fn scheme_on(problem: &Problem, mesh: &Mesh, sampling: Sampling, degree: usi
 
 fn sampled(problem: &Problem, mesh: &Mesh, sampling: Option<Sampling>, degree: usize, method: Method) -> Scheme {
     let links = periodic_links(mesh, &problem.periodic).unwrap();
-    let needs = Needs { degree, sampling, curl_free: problem.alpha.is_some() };
+    let needs = Needs { degree, sampling, curl_free: problem.alpha.is_some(), held: true };
     let operators = Operators::build(mesh, &links, &vec![0; mesh.cells.len()], &needs).unwrap();
     let force = problem.exact.body_force([0.0; 2], 0.0).is_some();
     let sources: Vec<Arc<dyn Source>> = if force { vec![Arc::new(ExactForce(problem.exact.clone()))] } else { vec![] };

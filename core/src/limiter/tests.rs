@@ -40,7 +40,7 @@ fn mesh(cells: usize, amount: f64) -> Mesh {
 }
 
 fn scheme(mesh: &Mesh, degree: usize, corrections: Vec<Arc<dyn Correction>>) -> Scheme {
-    let needs = Needs { degree, sampling: None, curl_free: false };
+    let needs = Needs { degree, sampling: None, curl_free: false, held: true };
     let operators = Operators::build(mesh, &links(mesh).unwrap(), &vec![0; mesh.cells.len()], &needs).unwrap();
     let walls = mesh.edge_groups.iter().map(|_| Arc::new(Wall { speed: None }) as Arc<dyn Boundary>).collect();
     let method = Method::RungeKutta(Tableau::of_degree(degree));

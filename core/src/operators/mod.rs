@@ -8,7 +8,8 @@ pub mod curl_free;
 pub mod curved;
 pub mod from_points;
 pub mod geometry;
-pub mod held_shares;
+mod held_fit;
+pub mod held_traces;
 pub mod matrix;
 mod order;
 pub mod point_matrices;
@@ -23,7 +24,7 @@ pub use curl_free::CurlFree;
 pub use from_points::from_points;
 pub(crate) use geometry::with_terms;
 pub use geometry::{BlockMetric, Cofactors, Geometry, Metric, NodeMetric, determinant};
-pub use held_shares::HeldShares;
+pub use held_traces::HeldTraces;
 pub use matrix::{Matrix, Pool, Share};
 pub use point_matrices::PointMatrices;
 pub use points::{Points, Sampling};
@@ -73,8 +74,8 @@ pub struct Operators {
     pub blocks: Blocks,
     /// Metric terms at nodes and faces.
     pub geometry: Geometry,
-    /// What traces of the displacement leave out between unequal cells; none where all cells are equal.
-    pub held_shares: Option<HeldShares>,
+    /// The traces of the displacement between unequal cells; none where all cells are equal, or the flux holds no jumps.
+    pub held_traces: Option<HeldTraces>,
     /// Transfer between points and nodes, and derivatives at points; `None` for RK-DGFEM.
     pub points: Option<Points>,
     /// The projection onto gradients; `None` if the scene has no control of the curl.
@@ -92,6 +93,8 @@ pub struct Needs<'a> {
     pub sampling: Option<Sampling<'a>>,
     /// Whether the curl of F is controlled.
     pub curl_free: bool,
+    /// Whether the flux holds jumps of the displacement ([`crate::riemann::Looks::Displacement`]).
+    pub held: bool,
 }
 
 impl Operators {
@@ -108,10 +111,10 @@ impl Operators {
     /// Completes stored matrices by the parts that are quickly computed from the mesh.
     pub fn assemble(mesh: &Mesh, line: Line, blocks: Blocks, needs: &Needs, stored: Stored) -> Self {
         let geometry = Geometry::new(mesh, &blocks, &line);
-        let held_shares = HeldShares::of(mesh, &blocks, needs.degree);
+        let held_traces = if needs.held { HeldTraces::of(mesh, &blocks, &line) } else { None };
         let points = needs.sampling.zip(stored.points).map(|(s, pool)| Points::new(mesh, &blocks, &line, s, pool));
         let curl_free = stored.curl_free.map(|pool| CurlFree::new(pool, mesh, &blocks, &line));
-        Self { degree: needs.degree, line, blocks, geometry, held_shares, points, curl_free, key: String::new() }
+        Self { degree: needs.degree, line, blocks, geometry, held_traces, points, curl_free, key: String::new() }
     }
 
     /// With the hash of their input.
@@ -155,20 +158,22 @@ impl Operators {
         out
     }
 
-    /// The factors of the nodes of a line in the trace of the displacement whose jump is held, at a face of the cell in a lane: [`Line::held`],
-    /// with its share between unequal cells.
-    pub fn held_ends(&self, block: usize, face: usize, lane: usize) -> Vec<f64> {
-        let Some(shares) = self.held_shares.as_ref().and_then(|all| all.block(block)) else {
-            return self.line.held[face % 2].clone();
-        };
-        let (plain, highest) = (&self.line.ends[face % 2], &self.line.highest[face % 2]);
-        plain.iter().zip(highest).map(|(plain, highest)| plain - shares[face].0[lane] * highest).collect()
+    /// The factors of all nodes in the trace of the displacement whose jump is held, at a point of a face of the cell in a lane.
+    pub fn held_trace(&self, block: usize, face: usize, lane: usize, point: usize) -> Vec<f64> {
+        let (m, nodes) = (self.line.m, self.nodes());
+        if let Some(factors) = self.held_traces.as_ref().and_then(|all| all.block(block)) {
+            return factors[(face * m + point) * nodes..][..nodes].iter().map(|factor| factor.0[lane]).collect();
+        }
+        let (first, stride) = if face < 2 { (point, m) } else { (point * m, 1) };
+        let mut out = vec![0.0; nodes];
+        self.line.held[face % 2].iter().enumerate().for_each(|(i, held)| out[first + stride * i] = *held);
+        out
     }
 
     /// Bytes held by matrices and metric terms.
     pub fn bytes(&self) -> usize {
         self.geometry.bytes()
-            + self.held_shares.as_ref().map_or(0, HeldShares::bytes)
+            + self.held_traces.as_ref().map_or(0, HeldTraces::bytes)
             + self.points.as_ref().map_or(0, Points::bytes)
             + self.curl_free.as_ref().map_or(0, CurlFree::bytes)
             + self.blocks.bytes()
@@ -201,9 +206,6 @@ pub struct Line {
     pub held: [Vec<f64>; 2],
     /// Lift by those traces: [`Line::held`] / w_k.
     pub held_lift: [Vec<f64>; 2],
-    /// The part of the highest coefficient in the traces between unequal cells, of which a cell leaves out its share
-    /// ([`HeldShares`]): w_k P_N(2 x_k - 1), with the sign of the outward direction where N is odd.
-    pub highest: [Vec<f64>; 2],
 }
 
 impl Line {
@@ -217,12 +219,10 @@ impl Line {
         let lift = [0, 1].map(|end: usize| ends[end].iter().zip(w).map(|(l, w)| l / w).collect());
         let is_even = degree.is_multiple_of(2);
         let of = |k: usize| w[k] * legendre(2.0 * basis.nodes[k] - 1.0).nth(degree).map_or(0.0, |(p, _)| p);
-        let signs = [if is_even { 1.0 } else { -1.0 }, 1.0];
-        let highest = signs.map(|sign| (0..m).map(|k| sign * of(k)).collect::<Vec<f64>>());
-        let left_out = |end: usize, k: usize| if is_even { highest[end][k] } else { 0.0 };
-        let held = [0, 1].map(|end: usize| (0..m).map(|k| ends[end][k] - left_out(end, k)).collect::<Vec<f64>>());
+        let left_out = |k: usize| if is_even { of(k) } else { 0.0 };
+        let held = [0, 1].map(|end: usize| (0..m).map(|k| ends[end][k] - left_out(k)).collect::<Vec<f64>>());
         let held_lift = [0, 1].map(|end: usize| held[end].iter().zip(w).map(|(l, w)| l / w).collect());
-        Self { basis, m, slope, weak, ends, lift, held, held_lift, highest }
+        Self { basis, m, slope, weak, ends, lift, held, held_lift }
     }
 
     /// Parent coordinates of the nodes a = i M + j.

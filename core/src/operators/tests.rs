@@ -19,7 +19,7 @@ fn distorted() -> Mesh {
 }
 
 fn build(mesh: &Mesh, degree: usize, cloud: &Cloud) -> Operators {
-    let needs = Needs { degree, sampling: Some(Sampling::Cloud(cloud)), curl_free: true };
+    let needs = Needs { degree, sampling: Some(Sampling::Cloud(cloud)), curl_free: true, held: true };
     Operators::build(mesh, &links(mesh).unwrap(), &vec![0; mesh.cells.len()], &needs).unwrap()
 }
 
@@ -320,7 +320,7 @@ fn congruent_cells_share_matrices_and_a_cell_that_cannot_carry_q_n_is_named() {
     assert_eq!(operators.curl_free.as_ref().unwrap().pool.shared.len(), 1);
     let mut cloud = seed::seed(seed::Layout::Paper, 3, 16);
     cloud.xi[9 * 5 + 1] = cloud.xi[9 * 5];
-    let needs = Needs { degree: 2, sampling: Some(Sampling::Cloud(&cloud)), curl_free: false };
+    let needs = Needs { degree: 2, sampling: Some(Sampling::Cloud(&cloud)), curl_free: false, held: true };
     let error = Operators::build(&mesh, &links(&mesh).unwrap(), &[0; 16], &needs).unwrap_err().to_string();
     assert!(error.contains(&format!("cell {}", mesh.number(5))) && error.contains("rank 8"), "{error}");
 }

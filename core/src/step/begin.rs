@@ -193,9 +193,9 @@ impl Begin<'_> {
         } else {
             kernel.run(volume::Traces::<'_, M, false> { line, metric, arrays, width, with_displacement, traces });
         });
-        if let (true, Some(shares)) = (with_displacement, block.held_shares()) {
+        if let (true, Some(factors)) = (with_displacement, block.held_traces()) {
             let displacement = &self.scratch.nodes.displacement;
-            kernel.run(UnequalTraces { line, shares, displacement, width, traces: self.traces });
+            kernel.run(UnequalTraces { line, factors, displacement, width, traces: self.traces });
         }
         // Later stages of RK are no states: what is wrong with them shows in the state that they make.
         let worst = (block.stage.number == 0).then_some((&mut *self.worst, block.cells()));

@@ -3,7 +3,6 @@
 use super::volume::Masses;
 use super::{Law, Scheme, Stage};
 use crate::lane::F8;
-use crate::mesh::FACES;
 use crate::operators::{BlockMetric, Points, with_nodes};
 use crate::riemann::Medium;
 use crate::state::State;
@@ -26,10 +25,10 @@ impl<'a> Block<'a> {
         self.scheme.operators.geometry.of(self.number)
     }
 
-    /// What its traces of the displacement leave out, by face; none between equal cells.
+    /// The factors of its traces of the displacement, [face][point][node]; none of a block of equal cells.
     #[inline]
-    pub fn held_shares(&self) -> Option<&'a [F8; FACES]> {
-        self.scheme.operators.held_shares.as_ref()?.block(self.number)
+    pub fn held_traces(&self) -> Option<&'a [F8]> {
+        self.scheme.operators.held_traces.as_ref()?.block(self.number)
     }
 
     /// The number of its material.

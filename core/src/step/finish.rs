@@ -103,9 +103,9 @@ impl Finish<'_> {
         }
         let (metric, nodes) = (block.metric(), &*nodes);
         let mut held = (block.scheme.flux.looks() == Looks::Displacement).then_some(&nodes.held[..]);
-        if let (Some(all), Some(shares)) = (held, block.held_shares()) {
+        if let (Some(all), Some(factors)) = (held, block.held_traces()) {
             let momentum = &mut self.rate[DEFORMATION * line.m * line.m..];
-            kernel.run(UnequalLift { line, shares, held: all, rate: momentum });
+            kernel.run(UnequalLift { line, factors, held: all, rate: momentum });
             held = None;
         }
         let lift = &nodes.lift[..];

@@ -58,7 +58,7 @@ pub(super) fn scheme(
         Kind::AderDgfem => Some(Sampling::Nodes),
         Kind::AderDgmpm => Some(Sampling::Cloud(cloud)),
     };
-    let needs = Needs { degree, sampling, curl_free: degree > 0 };
+    let needs = Needs { degree, sampling, curl_free: degree > 0, held: true };
     let operators = Operators::build(mesh, &links(mesh).unwrap(), &vec![0; mesh.cells.len()], &needs).unwrap();
     let method = match kind {
         Kind::RkDgfem => Method::RungeKutta(Tableau::of_degree(degree)),
@@ -210,7 +210,7 @@ pub(super) fn chessboard(mesh: &Mesh, kind: Kind) -> (Scheme, Vec<f64>) {
     let material: Vec<usize> = (0..mesh.cells.len()).map(|cell| (cell % side + cell / side) % 2).collect();
     let sampling = (kind == Kind::AderDgmpm).then_some(Sampling::Cloud(&cloud));
     let sampling = if kind == Kind::AderDgfem { Some(Sampling::Nodes) } else { sampling };
-    let needs = Needs { degree: 2, sampling, curl_free: true };
+    let needs = Needs { degree: 2, sampling, curl_free: true, held: true };
     let operators = Operators::build(mesh, &links(mesh).unwrap(), &material, &needs).unwrap();
     let heavy = Law::new(NeoHookean::new(3.0, 0.2, 9.0));
     let densities = material.iter().map(|&m| if m == 0 { 1.3 } else { 9.0 }).collect();

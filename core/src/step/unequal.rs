@@ -1,17 +1,17 @@
-//! Traces of the displacement and their lift between cells of unequal size or direction
-//! ([`HeldShares`](crate::operators::HeldShares)). A block of equal cells never comes here.
+//! Traces of the displacement and their lift between cells that are not equal
+//! ([`HeldTraces`](crate::operators::HeldTraces)). A block of equal cells never comes here.
 
 use crate::lane::{F8, Lanes, Work};
 use crate::mesh::FACES;
 use crate::operators::Line;
 use crate::tensor::AXES;
 
-/// The traces of u of a block, once more: those of degree N, less s times the part of the highest coefficient.
+/// The traces of u of a block, once more.
 pub(super) struct UnequalTraces<'a> {
     /// The 1D tables.
     pub line: &'a Line,
-    /// s, by face.
-    pub shares: &'a [F8; FACES],
+    /// Their factors, [face][point][node].
+    pub factors: &'a [F8],
     /// u at the nodes, [node][2].
     pub displacement: &'a [F8],
     /// Numbers of a trace.
@@ -25,20 +25,18 @@ impl Work for UnequalTraces<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let m = self.line.m;
-        for (face, share) in self.shares.iter().enumerate() {
-            let (ends, highest, share) = (&self.line.ends[face % 2], &self.line.highest[face % 2], L::load(share));
-            let of_face = self.traces.chunks_exact_mut(self.width).skip(face * m).take(m);
-            for (point, trace) in of_face.enumerate() {
-                let (first, stride) = if face < 2 { (point, m) } else { (point * m, 1) };
+        let displacement = self.displacement.as_chunks::<AXES>().0;
+        let traces = self.traces.chunks_exact_mut(self.width).take(FACES * m);
+        for (trace, factors) in traces.zip(self.factors.chunks_exact(m * m)) {
+            let mut sum = [L::zero(); AXES];
+            for (factor, u) in factors.iter().zip(displacement) {
+                let factor = L::load(factor);
                 for k in 0..AXES {
-                    let mut sum = L::zero();
-                    for (i, (plain, highest)) in ends.iter().zip(highest).enumerate() {
-                        let factor = L::splat(*plain) - share * L::splat(*highest);
-                        let u = L::load(&self.displacement[AXES * (first + stride * i) + k]);
-                        sum = factor.mul_add(u, sum);
-                    }
-                    sum.store(&mut trace[9 + k]);
+                    sum[k] = factor.mul_add(L::load(&u[k]), sum[k]);
                 }
+            }
+            for (sum, u) in sum.iter().zip(&mut trace[9..]) {
+                sum.store(u);
             }
         }
     }
@@ -48,8 +46,8 @@ impl Work for UnequalTraces<'_> {
 pub(super) struct UnequalLift<'a> {
     /// The 1D tables.
     pub line: &'a Line,
-    /// s, by face.
-    pub shares: &'a [F8; FACES],
+    /// The factors of the traces, [face][point][node].
+    pub factors: &'a [F8],
     /// [face][point][2].
     pub held: &'a [F8],
     /// J dp/dt, [component][node]: out of it goes what is lifted.
@@ -61,17 +59,20 @@ impl Work for UnequalLift<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let (m, weights) = (self.line.m, &self.line.basis.weights);
-        for (face, share) in self.shares.iter().enumerate() {
-            let (ends, highest, share) = (&self.line.ends[face % 2], &self.line.highest[face % 2], L::load(share));
-            for (point, held) in self.held.as_chunks::<AXES>().0.iter().skip(face * m).take(m).enumerate() {
-                let (first, stride) = if face < 2 { (point, m) } else { (point * m, 1) };
-                for (i, ((plain, highest), weight)) in ends.iter().zip(highest).zip(weights).enumerate() {
-                    let factor = L::splat(plain / weight) - share * L::splat(highest / weight);
-                    for (k, held) in held.iter().enumerate() {
-                        let rate = &mut self.rate[k * m * m + first + stride * i];
-                        (L::load(rate) - factor * L::load(held)).store(rate);
-                    }
+        let n = m * m;
+        let held = &self.held.as_chunks::<AXES>().0[..FACES * m];
+        for a in 0..n {
+            let mut sum = [L::zero(); AXES];
+            for (point, held) in held.iter().enumerate() {
+                let factor = L::load(&self.factors[point * n + a]) * L::splat(weights[point % m]);
+                for k in 0..AXES {
+                    sum[k] = factor.mul_add(L::load(&held[k]), sum[k]);
                 }
+            }
+            let inverse = L::splat(-1.0 / (weights[a / m] * weights[a % m]));
+            for (k, sum) in sum.iter().enumerate() {
+                let rate = &mut self.rate[k * n + a];
+                sum.mul_add(inverse, L::load(rate)).store(rate);
             }
         }
     }

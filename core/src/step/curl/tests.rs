@@ -35,7 +35,7 @@ fn on_all_cells_it_is_the_projection_of_a_single_one() {
     let different = mesh(|x| [x[0] + 0.1 * (5.0 * x[1]).sin(), x[1] + 0.1 * (3.0 * x[0]).cos()]);
     for (mesh, by_halves) in [(sheared, true), (trapezoids, false), (different, false)] {
         for degree in 1..=6 {
-            let needs = Needs { degree, sampling: None, curl_free: true };
+            let needs = Needs { degree, sampling: None, curl_free: true, held: true };
             let operators = Operators::build(&mesh, &links(&mesh).unwrap(), &[0; 8], &needs).unwrap();
             let (curl_free, n) = (operators.curl_free.as_ref().unwrap(), operators.nodes());
             let halves = |class: &Class| matches!(class, Class::Halves(_));
