@@ -8,8 +8,9 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, RowDVector};
 /// How much of a jump is let by for what the traces leave out, over the largest jump that a part of size 1 of it makes. Orders of the manufactured
 /// problem on trapezoids (16 to 32 cells) with .1, .01, .001, .0003: S2 2.62, 2.83, 2.83, 2.83, S3 2.95, 3.12, 3.63, 3.79.
 const SLACK: f64 = 3e-4;
-/// The largest norm of what the traces of a point leave out.
-const MOST: f64 = 4.0;
+/// The largest norm of what the traces of a point leave out, over that of the trace along a line, N + 1. With 2 at N = 1 the faces between
+/// cells of lengths 1 : 6 in both directions were stiffer than the step.
+const MOST: f64 = 0.5;
 /// Conditions below this share of the largest say nothing: rounding.
 const RANK: f64 = 1e-11;
 
@@ -50,7 +51,7 @@ impl<'a> Fit<'a> {
     /// - minimise |jump|^2 / [`SLACK`]^2 + |c - c0|^2 over the polynomials of degree N + 1 (Legendre's, in coordinates in which both cells have the size
     ///   1), sampled at the nodes as a smooth function is; c0 is what [`Line::held`] leaves out.
     ///
-    /// Both cells find the same c, to rounding. Where |c| is more than [`MOST`], all of it counts less.
+    /// Both cells find the same c, to rounding. Where |c| is more than [`MOST`] (N + 1), all of it counts less.
     pub fn traces(&self, own: AtFace, other: AtFace) -> Vec<f64> {
         let (m, count) = (self.line.m, self.modes.len());
         let values = self.polynomials(own, other);
@@ -68,7 +69,7 @@ impl<'a> Fit<'a> {
             let jump = |[one, two]: &[Vec<f64>; 2]| product(one, &ends[0]) - product(two, &ends[1]);
             let jumps = DVector::from_iterator(values.len(), values.iter().map(jump));
             let c = conditions.nearest(usual, &jumps);
-            let weight = (MOST / c.norm()).min(1.0);
+            let weight = (MOST * m as f64 / c.norm()).min(1.0);
             let mut factors = ends[0].clone();
             for (c, mode) in c.iter().zip(&self.modes) {
                 factors.iter_mut().zip(mode).for_each(|(factor, mode)| *factor -= weight * c * mode);

@@ -10,7 +10,7 @@ use crate::boundary::{FacePoint, Moment};
 use crate::built;
 use crate::lane::{F8, LANES};
 use crate::mesh::map::{self, CellMap};
-use crate::operators::{BlockMetric, Neighbour};
+use crate::operators::{BlockMetric, MOST_FACE_POINTS, Neighbour};
 use crate::riemann::{Looks, Medium, Trace, hold, interface};
 use crate::state::UNKNOWNS;
 use crate::tensor::DEFORMATION;
@@ -97,21 +97,31 @@ impl SingleFace<'_> {
         }
     }
 
-    /// Books what the flux at a point of the boundary gives to the body.
+    /// Books what the fluxes at the boundary give to the body.
     #[inline(always)]
-    fn book_work(&self, point: usize, flux: &[f64; UNKNOWNS], meter: &mut Meter) {
+    fn book_work(&self, fluxes: &[[f64; UNKNOWNS]], meter: &mut Meter) {
         let Some(external) = &mut meter.external else { return };
-        let (normal, length) = self.normal_and_length(point);
-        let weight = self.block.scheme.operators.line.basis.weights[point] * length * self.block.factor();
-        external.boundary.0[self.lane] += weight * boundary_power(flux, normal);
+        for (point, flux) in fluxes.iter().enumerate() {
+            external.boundary.0[self.lane] +=
+                self.weight(point) * boundary_power(flux, self.normal_and_length(point).0);
+        }
     }
 
-    /// Books what a condition loses at a point; `stored`: what its spring stores, W/m^2.
+    /// Books what a condition loses; `stored`: what the springs store, W/m^2.
     #[inline(never)]
-    fn book_loss(&self, own: &[F8], point: usize, flux: &[f64; UNKNOWNS], stored: f64, balance: &mut BlockBalance) {
-        let (normal, length) = self.normal_and_length(point);
-        let weight = self.block.scheme.operators.line.basis.weights[point] * length * self.block.factor();
-        balance.boundary.0[self.lane] += weight * (boundary_loss(own, flux, normal, self.lane) - stored);
+    fn book_loss(&self, sides: Sides, fluxes: &[[f64; UNKNOWNS]], stored: &[f64], balance: &mut BlockBalance) {
+        for (point, (flux, stored)) in fluxes.iter().zip(stored).enumerate() {
+            let (own, normal) = (sides.of_point(point, fluxes.len()), self.normal_and_length(point).0);
+            balance.boundary.0[self.lane] +=
+                self.weight(point) * (boundary_loss(own, flux, normal, self.lane) - stored);
+        }
+    }
+
+    /// dt b_s w len of a point.
+    #[inline(always)]
+    fn weight(&self, point: usize) -> f64 {
+        let length = self.normal_and_length(point).1;
+        self.block.scheme.operators.line.basis.weights[point] * length * self.block.factor()
     }
 
     /// What is held at a point: nothing at a boundary, and by fluxes that do not look at the displacement.
@@ -174,55 +184,54 @@ impl<'a> Block<'a> {
         mut springs: Option<&mut Springs>,
         meter: &mut Meter,
     ) {
-        let whole = if built::OBSTACLES && self.scheme.sees_faces {
-            self.fluxes_of_whole_faces(sides.face, sides.own, meter.memory)
-        } else {
-            vec![]
-        };
-        let m = self.scheme.operators.line.m;
+        let is_special = sides.met.is_some() || springs.is_some() || (built::OBSTACLES && self.scheme.sees_faces);
         for lane in 0..LANES {
             let Some(face) = self.single_face(sides.face, lane) else { continue };
-            let whole = whole.iter().find(|whole| whole.0 == lane).map(|whole| &whole.1);
-            let is_plain = whole.is_none() && sides.met.is_none() && springs.is_none();
-            for (point, lift) in lift.as_chunks_mut::<UNKNOWNS>().0.iter_mut().enumerate() {
-                let own = sides.of_point(point, m);
-                let flux = if is_plain {
-                    face.flux(sides, point, meter.memory, None)
-                } else {
-                    let of_whole = whole.map(|whole| whole[point]);
-                    self.special_flux(&face, sides, point, of_whole, springs.as_deref_mut(), meter.memory)
-                };
+            let (mut all, mut stored) = ([[0.0; UNKNOWNS]; MOST_FACE_POINTS], [0.0; MOST_FACE_POINTS]);
+            let fluxes = &mut all[..lift.len() / UNKNOWNS];
+            if is_special {
+                self.special_fluxes(&face, sides, springs.as_deref_mut(), meter.memory, (fluxes, &mut stored));
+            } else {
+                fluxes.iter_mut().enumerate().for_each(|(k, flux)| *flux = face.flux(sides, k, meter.memory, None));
+            }
+            for (point, (flux, lift)) in fluxes.iter().zip(lift.as_chunks_mut::<UNKNOWNS>().0).enumerate() {
                 let between = face.held(sides, point);
                 (0..2).for_each(|k| held[2 * point + k].0[lane] = between[k]);
-                face.lift(own, point, &flux, lift);
-                if matches!(face.neighbour, Neighbour::Boundary(_)) {
-                    face.book_work(point, &flux, meter);
-                    if let (true, Some(balance)) = (built::BALANCE, &mut meter.balance) {
-                        let stored = springs.as_ref().map_or(0.0, |springs| springs.stored);
-                        face.book_loss(own, point, &flux, stored, balance);
-                    }
+                face.lift(sides.of_point(point, fluxes.len()), point, flux, lift);
+            }
+            if matches!(face.neighbour, Neighbour::Boundary(_)) {
+                face.book_work(fluxes, meter);
+                if let (true, Some(balance)) = (built::BALANCE, &mut meter.balance) {
+                    face.book_loss(sides, fluxes, &stored, balance);
                 }
             }
         }
     }
 
-    /// The flux at a point that may have springs, may meet other faces, or whose condition may have found it for all points of the face.
+    /// The fluxes of a face that may have springs, may meet other faces, or whose condition may find them for all points at once; and what its springs
+    /// store, W/m^2.
     #[inline(never)]
-    fn special_flux(
+    fn special_fluxes(
         &self,
         face: &SingleFace,
         sides: Sides,
-        point: usize,
-        of_whole: Option<[f64; UNKNOWNS]>,
         mut springs: Option<&mut Springs>,
         memory: &mut [f64],
-    ) -> [f64; UNKNOWNS] {
-        let m = self.scheme.operators.line.m;
-        if let Some(springs) = &mut springs {
-            springs.keep(m * sides.face + point, face.lane);
+        (fluxes, stored): (&mut [[f64; UNKNOWNS]], &mut [f64]),
+    ) {
+        let m = fluxes.len();
+        let sees_faces = built::OBSTACLES && self.scheme.sees_faces;
+        let whole = if sees_faces { self.flux_of_whole_face([sides.face, face.lane], sides.own, memory) } else { None };
+        for (point, (flux, stored)) in fluxes.iter_mut().zip(stored).enumerate() {
+            if let Some(springs) = &mut springs {
+                springs.keep(m * sides.face + point, face.lane);
+            }
+            let own = sides.of_point(point, m);
+            let met = sides.met.and_then(|met| self.flux_of_meeting(met, face, own, point, memory));
+            let found = met.or_else(|| whole.as_ref().map(|whole| whole[point]));
+            let moving = springs.as_deref_mut().map(Pulling::Moving);
+            *flux = found.unwrap_or_else(|| face.flux(sides, point, memory, moving));
+            *stored = springs.as_ref().map_or(0.0, |springs| springs.stored);
         }
-        let own = sides.of_point(point, m);
-        let met = sides.met.and_then(|met| self.flux_of_meeting(met, face, own, point, memory));
-        met.or(of_whole).unwrap_or_else(|| face.flux(sides, point, memory, springs.map(Pulling::Moving)))
     }
 }

@@ -3,32 +3,27 @@
 use super::block::Block;
 use super::segments::{MOST, on_face};
 use crate::boundary::{FacePoint, Moment, WholeFace};
-use crate::lane::{F8, LANES};
+use crate::lane::F8;
 use crate::mesh::map;
 use crate::operators::Neighbour;
 use crate::riemann::Trace;
 use crate::state::UNKNOWNS;
 
-/// A lane, and the flux at the points of its face.
-pub(super) type OfLane = (usize, [[f64; UNKNOWNS]; MOST]);
-
 impl Block<'_> {
-    /// The fluxes of the lanes of a face whose conditions decide for all points at once; mostly there are none. `own`: the numbers of the
-    /// points of the face.
-    pub(super) fn fluxes_of_whole_faces(&self, face: usize, own: &[F8], memory: &mut [f64]) -> Vec<OfLane> {
-        let lanes = &self.scheme.operators.blocks.neighbours[self.number][face];
-        let sees = |lane: &usize| match lanes[*lane] {
-            Neighbour::Boundary(group) => self.scheme.boundaries[group].sees_faces(),
-            _ => false,
-        };
-        (0..LANES).filter(sees).filter_map(|lane| self.flux_of_whole_face([face, lane], own, memory)).collect()
-    }
-
-    fn flux_of_whole_face(&self, [face, lane]: [usize; 2], own: &[F8], memory: &mut [f64]) -> Option<OfLane> {
+    /// The flux at the points of the face of a lane, if its condition decides for all of them at once. `own`: the numbers of the points of the face.
+    pub(super) fn flux_of_whole_face(
+        &self,
+        [face, lane]: [usize; 2],
+        own: &[F8],
+        memory: &mut [f64],
+    ) -> Option<[[f64; UNKNOWNS]; MOST]> {
         let (scheme, line) = (self.scheme, &self.scheme.operators.line);
         let Neighbour::Boundary(group) = scheme.operators.blocks.neighbours[self.number][face][lane] else {
             return None;
         };
+        if !scheme.boundaries[group].sees_faces() {
+            return None;
+        }
         let width = own.len() / line.m;
         let points = self.face_points(face, lane);
         let of = |(at, own): (&FacePoint, &[F8])| {
@@ -45,6 +40,6 @@ impl Block<'_> {
         let when = Moment { times: self.stage.times, dt: self.factor() };
         let memory = scheme.boundary_memory.of_face(memory, [self.number, face, lane], line.m);
         let mut flux = [[0.0; UNKNOWNS]; MOST];
-        scheme.boundaries[group].face_flux(&whole, &when, memory, &mut flux[..line.m]).then_some((lane, flux))
+        scheme.boundaries[group].face_flux(&whole, &when, memory, &mut flux[..line.m]).then_some(flux)
     }
 }
