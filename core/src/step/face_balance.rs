@@ -1,37 +1,17 @@
 //! What faces between cells add to the balance of energy.
 
-use super::across::{Beyond, Other};
+use super::across::Other;
 use super::balance::{BlockBalance, FacePower};
 use super::block::Block;
 use super::block_work::FluxWork;
 use super::creep::{Pull, Pulling};
-use super::meeting_flux::Met;
+use super::sides::Sides;
 use super::trace::{trace_of, turn, turned, with_width};
 use super::volume::width;
 use crate::lane::{F8, Lanes, load_array, store_array};
 use crate::operators::Neighbour;
 use crate::riemann::{Looks, Riemann};
 use crate::state::UNKNOWNS;
-
-/// The traces of a face of a block, [point][width].
-#[derive(Clone, Copy)]
-pub(super) struct Sides<'a> {
-    pub face: usize,
-    pub own: &'a [F8],
-    /// With its own normal; lanes at a boundary see themselves or what they must not use.
-    pub other: &'a Beyond<'a>,
-    /// What else faces of the block meet; none where no condition pairs faces.
-    pub met: Option<Met<'a>>,
-}
-
-impl<'a> Sides<'a> {
-    /// The own numbers of a point of a face that has `points`.
-    #[inline(always)]
-    pub fn of_point(&self, point: usize, points: usize) -> &'a [F8] {
-        let width = self.own.len() / points;
-        &self.own[point * width..][..width]
-    }
-}
 
 /// What a face between cells adds to the balance of the block. The fluxes are found once more: without the balance they never come to
 /// memory.

@@ -7,6 +7,7 @@ use super::block_energy::BlockEnergy;
 use super::creep::Creep;
 use super::lift::Lift;
 use super::meetings::Meetings;
+use super::meter::Meter;
 use super::outside::{ExternalWork, FaceForces, Torques};
 use super::phase::Clock;
 use super::rotation::Rotation;
@@ -16,7 +17,7 @@ use super::survey::{Examine, History};
 use super::unequal::UnequalLift;
 use super::volume::Masses;
 use super::worst::Worst;
-use super::{Part, Phase, Scratch, Speeds, Survey, across, curl, curl_core, flux};
+use super::{Part, Phase, Scratch, Speeds, Survey, across, curl, curl_core};
 use crate::built;
 use crate::lane::{F8, Lanes, Work};
 use crate::operators::curl_free::Relax;
@@ -96,7 +97,7 @@ impl Finish<'_> {
         let forces = self.forces.as_deref_mut();
         let Scratch { nodes, phases, .. } = &mut *self.scratch;
         let creep = self.creep.as_mut().map(|Creep { start, now }| Creep { start, now });
-        let meter = flux::Meter { external, forces, balance, memory: &mut *self.memory, creep, phases };
+        let meter = Meter { external, forces, balance, memory: &mut *self.memory, creep, phases };
         block.lifted_fluxes(&self.traces, self.meetings, nodes, meter);
         if let Some(torques) = self.torques.as_deref_mut() {
             block.book_torque(self.state, &nodes.lift, torques);

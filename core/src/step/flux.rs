@@ -5,15 +5,14 @@ mod special;
 pub(super) use special::SpecialFaces;
 
 use super::across::{Aligned, Apart, Beyond, Joined, LaneByLane, Other, Traces};
-use super::balance::BlockBalance;
 use super::block::Block;
 use super::block_work::FluxWork;
-use super::creep::{Creep, Pull, Springs};
-use super::face_balance::{FaceBalance, Sides};
-use super::meeting_flux::Met;
+use super::creep::{Pull, Springs};
+use super::face_balance::FaceBalance;
 use super::meetings::Meetings;
-use super::outside::{ExternalWork, FaceForces};
-use super::phase::{Part, Ticks};
+use super::meter::Meter;
+use super::phase::Part;
+use super::sides::{Met, Sides};
 use super::trace::{held, trace_of, turn, turned, with_width};
 use super::volume::{Arrays, width};
 use crate::built;
@@ -93,29 +92,6 @@ impl Faces<'_> {
             }
             store_array(riemann.lifted(&minus, &plus, normal, &medium, length), &mut lift[point]);
         }
-    }
-}
-
-/// Where the energy that passes the faces of a block goes.
-pub(super) struct Meter<'a> {
-    /// The work on the block; none where nothing outside touches it.
-    pub external: Option<&'a mut ExternalWork>,
-    /// The forces at the faces; none where nobody asks for them.
-    pub forces: Option<&'a mut FaceForces>,
-    /// The balance; none where it is off.
-    pub balance: Option<&'a mut BlockBalance>,
-    /// The memory of the conditions at the block.
-    pub memory: &'a mut [f64],
-    /// The creep of the faces of the block; none where they have no springs.
-    pub creep: Option<Creep<'a>>,
-    /// The clock of the thread.
-    pub phases: &'a mut Ticks,
-}
-
-impl Meter<'_> {
-    /// The work of the boundary on the block so far; none where nobody asks for forces.
-    fn work_so_far(&self) -> Option<F8> {
-        self.forces.as_ref().and(self.external.as_ref()).map(|external| external.boundary)
     }
 }
 

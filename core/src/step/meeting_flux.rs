@@ -2,23 +2,14 @@
 
 use super::across::Traces;
 use super::block::Block;
-use super::meetings::Meetings;
 use super::segments::{Point, Segment};
-use super::single_faces::SingleFace;
+use super::sides::Met;
+use super::single_face::SingleFace;
 use crate::contact::{Meeting, Side};
 use crate::lane::F8;
 use crate::mesh::FACES;
 use crate::riemann::{Trace, star};
 use crate::state::UNKNOWNS;
-
-/// Where the faces of a block meet others in this step, and the traces there.
-#[derive(Clone, Copy)]
-pub(super) struct Met<'a> {
-    /// The meetings of the step.
-    pub meetings: &'a Meetings,
-    /// All traces under way.
-    pub traces: &'a Traces<'a>,
-}
 
 /// The unit normal of a face where its polynomials have these values; that of a straight face to the bit.
 fn mean_normal(values: &[f64], normals: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
