@@ -162,8 +162,11 @@ proptest! {
         let (law, n) = (steel(4e8, 1e10), [angle.cos(), angle.sin()]);
         let response = law.response(to, &history(&law, &way));
         let (face, elastic) = (law.pressure_speed(to, n), elastic_speed(&law, to, &response.history, n));
-        // Both deviators of elastic strain are below sqrt(2/3)(sigma_y + H p)/(2 mu), .8 % for the p of these ways.
-        prop_assert!((face / elastic - 1.0).abs() < 0.02, "{face} {elastic}");
+        // The moduli differ by what the deviators of elastic strain differ, which are below sqrt(2/3)(sigma_y + H p)/(2 mu), and c by half of
+        // that: measured up to .44 of it in 20000 cases.
+        let strength = 4e8 + 1e10 * response.history[PLASTIC_STRAIN];
+        let strain = (2.0_f64 / 3.0).sqrt() * strength / (2.0 * 2e11 / 2.6);
+        prop_assert!((face / elastic - 1.0).abs() < strain, "{face} {elastic} {strain}");
     }
 }
 
