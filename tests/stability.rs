@@ -174,8 +174,8 @@ fn faces_between_cells_of_very_unequal_size_are_not_stiffer_than_the_step() {
             let scene = body.method("ader-dgmpm").degree(degree).end(1.0).scene(&[]);
             let found = measure(&Setup { domain: Domain::Scene(Box::new(scene)), ..patch(&[]) }, ASKED).unwrap();
             println!("{name} S{degree}: {:?} {:e}", found.radius, found.growth);
-            // Measured 0 at degree 1; rounding and the noise of the differences at degree 2.
-            assert!(found.radius.unwrap() < 1.0 + 1e-6, "{name} S{degree}: {found:?}");
+            // Measured 1 to the last digit; rounding of another path of the kernels is some 1e-12.
+            assert!(found.radius.unwrap() < 1.0 + 1e-9, "{name} S{degree}: {found:?}");
         }
     }
 }

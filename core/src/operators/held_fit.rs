@@ -96,7 +96,7 @@ impl<'a> Fit<'a> {
         let at = if flip { self.line.m - 1 - point } else { point };
         let held = self.at_nodes(&self.line.held[face % 2], face, at);
         let difference: Vec<f64> = self.plain(side, point).iter().zip(held).map(|(plain, held)| plain - held).collect();
-        // a_ij of sum_ij c_ij a_ij(u) as a function of u: its Riesz representer has the node values difference_a / w_a.
+        // sum_a d_a u_a is the mean over the cell of u times the polynomial with the values d_a / w_a at the nodes; c_ij are the coefficients of it.
         let m = self.line.m;
         let weight = |a: usize| self.line.basis.weights[a / m] * self.line.basis.weights[a % m];
         let of = |mode: &Vec<f64>| mode.iter().zip(&difference).enumerate().map(|(a, (x, y))| x * y / weight(a)).sum();
