@@ -10,14 +10,13 @@ use super::outside::ExternalWork;
 use super::phase::Clock;
 use super::predictor::transfer::{FieldsToPoints, ToNodes};
 use super::predictor::{self, Predictor};
-use super::sources::AddSources;
 use super::sweeps::Sweep;
 use super::unequal::UnequalTraces;
 use super::volume;
 use super::worst::Worst;
 use super::{Method, Part, Phase, Scratch};
 use crate::built;
-use crate::lane::{Coefficient, F8, Lanes, prefetch, ticks};
+use crate::lane::{Coefficient, F8, Lanes, prefetch};
 use crate::material::Material;
 use crate::operators::{PointMatrices, Share, with_nodes, with_terms};
 use crate::riemann::Looks;
@@ -113,10 +112,7 @@ impl Begin<'_> {
             }
         });
         if built::SOURCES && !block.scheme.sources.is_empty() {
-            let count = block.scheme.operators.block_points(block.number);
-            let start = phases.start();
-            block.sources_at_points(points, count, arrays);
-            phases.book_part(Part::Sources, start);
+            block.first_sources(points, arrays, phases);
         }
     }
 
@@ -130,8 +126,7 @@ impl Begin<'_> {
             ForCoefficient::predict(block, Predict { block, matrices, metric, internal, arrays });
         });
         if built::SOURCES && !block.scheme.sources.is_empty() {
-            let ticks = std::mem::take(&mut self.scratch.points.ticks);
-            self.scratch.phases.add_part(Part::Sources, ticks);
+            self.scratch.book_ticks_of_sources();
         }
     }
 
@@ -162,18 +157,12 @@ impl Begin<'_> {
         let (block, kernel, line) = (self.block, self.block.scheme.kernel, &self.block.scheme.operators.line);
         let (metric, arrays, rate) = (block.metric(), &mut self.scratch.nodes, &mut *self.rate);
         with_terms!(metric, metric => with_nodes!(line.m, M => kernel.run(volume::Volume::<'_, M, _> { line, metric, arrays, rate })));
-        let Scratch { nodes, phases, .. } = &mut *self.scratch;
         if built::SOURCES && !block.scheme.sources.is_empty() {
-            let start = phases.start();
-            block.sources_at_nodes(&nodes.mean, &mut nodes.source);
-            block.find_masses(&mut nodes.masses);
-            let external = self.external.as_deref_mut();
-            kernel.run(AddSources { block, nodes, rate: self.rate, external });
-            phases.book_part(Part::Sources, start);
+            block.add_sources(self.scratch, self.rate, self.external.as_deref_mut());
         }
         if self.state.has_displacement() {
             let count = block.scheme.operators.nodes();
-            kernel.run(DisplacementRate { mean: &nodes.mean, rate: self.rate, nodes: count });
+            kernel.run(DisplacementRate { mean: &self.scratch.nodes.mean, rate: self.rate, nodes: count });
         }
     }
 
@@ -241,14 +230,10 @@ impl<C: Coefficient> LawWork for Predict<'_, C> {
         let Self { block, matrices, metric, internal, arrays } = self;
         let Method::Ader { time, sweeps } = &block.scheme.method else { return };
         let (weights, dt, kernel) = (&time.weights[..], block.stage.dt, block.scheme.kernel);
-        let moving = built::SOURCES && block.scheme.sources.iter().any(|source| source.varies().velocity);
         let renew = |sweep: &Sweep, arrays: &mut predictor::Arrays| {
-            if let Some(points) = block.points() {
-                let start = ticks();
-                block.renew_sources(points, &time.integration, sweep, arrays);
-                arrays.ticks += ticks().wrapping_sub(start);
-            }
+            block.renew_sources(&time.integration, sweep, arrays);
         };
+        let moving = built::SOURCES && block.sources_move();
         let renew: Option<predictor::Renew> = if moving { Some(&renew) } else { None };
         Predictor { law: &law, matrices, metric, weights, sweeps, dt, internal, renew, kernel }.run::<L>(arrays);
     }

@@ -11,7 +11,6 @@ use super::meter::Meter;
 use super::outside::{ExternalWork, FaceForces, Torques};
 use super::phase::Clock;
 use super::rotation::Rotation;
-use super::sources::SourceEnd;
 use super::sums::Terms;
 use super::survey::{Examine, History};
 use super::unequal::UnequalLift;
@@ -147,16 +146,14 @@ impl Finish<'_> {
 
     /// Books the work of sources in the step to `u`.
     fn meter_sources(&mut self, u: &[F8]) {
-        let (block, n) = (self.block, self.block.scheme.operators.nodes());
-        let Some(external) = self.external.as_deref_mut() else { return };
-        if !built::SOURCES || block.scheme.sources.is_empty() {
+        if !built::SOURCES || self.block.scheme.sources.is_empty() {
             return;
         }
-        let masses = &mut self.scratch.nodes.masses;
-        block.find_masses(masses);
+        let (block, n) = (self.block, self.block.scheme.operators.nodes());
+        let Some(external) = self.external.as_deref_mut() else { return };
         let momenta = DEFORMATION * n..UNKNOWNS * n;
         let before = &block.unknowns(self.state)[momenta.clone()];
-        block.scheme.kernel.run(SourceEnd { masses, before, after: &u[momenta], external });
+        block.end_sources(before, &u[momenta], &mut self.scratch.nodes.masses, external);
     }
 
     /// Books the energy of `u` where the balance is on.

@@ -4,10 +4,11 @@ use super::acceleration::{Acceleration, Vectors, add_times, by_lane};
 use super::balance::add;
 use super::block::Block;
 use super::outside::ExternalWork;
+use super::phase::Ticks;
 use super::predictor::Arrays;
 use super::sweeps::Sweep;
-use super::volume;
-use crate::lane::{F8, Lanes, Work, load_array};
+use super::{Part, Scratch, volume};
+use crate::lane::{F8, Lanes, Work, load_array, ticks};
 use crate::operators::Points;
 use crate::state::UNKNOWNS;
 use crate::tensor::{AXES, DEFORMATION, dot};
@@ -15,18 +16,33 @@ use crate::tensor::{AXES, DEFORMATION, dot};
 /// Time nodes of a step at most.
 const MOST_TIMES: usize = 8;
 
+// What a step calls of these is never inlined into it: a step without sources has the tests for them alone, and no longer code between
+// what it does.
 impl Block<'_> {
     /// b at the points and time nodes with v of t_n, for the first guess of the predictor, into `arrays.source`.
-    pub fn sources_at_points(&self, points: &Points, count: usize, arrays: &mut Arrays) {
+    #[inline(never)]
+    pub fn first_sources(&self, points: &Points, arrays: &mut Arrays, phases: &mut Ticks) {
+        let begin = phases.start();
+        let count = self.scheme.operators.block_points(self.number);
         let (start, inverse) = (&arrays.start, 1.0 / self.law().density());
         let v = |_: &[F8], p: usize, _: usize| {
             [0, 1].map(|k| by_lane(|lane| start[UNKNOWNS * p + DEFORMATION + k].0[lane] * inverse))
         };
         self.sources_with(points, count, v, &mut arrays.source);
+        phases.book_part(Part::Sources, begin);
+    }
+
+    /// Whether a source depends on the velocity.
+    #[inline(never)]
+    pub fn sources_move(&self) -> bool {
+        self.scheme.sources.iter().any(|source| source.varies().velocity)
     }
 
     /// The same with v of the sweep before `sweep`, from its rates and from b itself.
-    pub fn renew_sources(&self, points: &Points, integration: &[f64], sweep: &Sweep, arrays: &mut Arrays) {
+    #[inline(never)]
+    pub fn renew_sources(&self, integration: &[f64], sweep: &Sweep, arrays: &mut Arrays) {
+        let Some(points) = self.points() else { return };
+        let begin = ticks();
         let count = self.scheme.operators.block_points(self.number);
         let (times, dt, density) = (self.stage.times.len(), self.stage.dt, self.law().density());
         let (start, rates) = (&arrays.start, &arrays.rates[0]);
@@ -45,6 +61,7 @@ impl Block<'_> {
             })
         };
         self.sources_with(points, count, v, &mut arrays.source);
+        arrays.ticks += ticks().wrapping_sub(begin);
     }
 
     /// b at the points and time nodes, [time node][point][2], with v at a time node by v(b so far, point, time node).
@@ -70,8 +87,26 @@ impl Block<'_> {
         }
     }
 
+    /// Books the work of sources in the step that ends with the momenta `after`.
+    #[inline(never)]
+    pub fn end_sources(self, before: &[F8], after: &[F8], masses: &mut [F8], external: &mut ExternalWork) {
+        self.find_masses(masses);
+        self.scheme.kernel.run(SourceEnd { masses, before, after, external });
+    }
+
+    /// Adds J rho0 b at the nodes to the rates of p, and the work of the stage to the external work.
+    #[inline(never)]
+    pub fn add_sources(self, scratch: &mut Scratch, rate: &mut [F8], external: Option<&mut ExternalWork>) {
+        let Scratch { nodes, phases, .. } = scratch;
+        let start = phases.start();
+        self.sources_at_nodes(&nodes.mean, &mut nodes.source);
+        self.find_masses(&mut nodes.masses);
+        self.scheme.kernel.run(AddSources { block: self, nodes, rate, external });
+        phases.book_part(Part::Sources, start);
+    }
+
     /// b at the nodes, averaged over the time nodes, [2][node]; `mean` has F and v of the stage, [node][6].
-    pub fn sources_at_nodes(&self, mean: &[F8], out: &mut [F8]) {
+    fn sources_at_nodes(&self, mean: &[F8], out: &mut [F8]) {
         let (n, sources) = (self.scheme.operators.nodes(), Acceleration::of(self));
         for a in 0..n {
             let xi = self.scheme.operators.line.basis.node_2d(a);
@@ -89,8 +124,17 @@ impl Block<'_> {
     }
 }
 
-/// Adds J rho0 b at the nodes to the rates of p, and the work of the stage to the external work.
-pub(super) struct AddSources<'a> {
+impl Scratch {
+    /// Books the time that the predictor has spent on sources.
+    #[inline(never)]
+    pub fn book_ticks_of_sources(&mut self) {
+        let ticks = std::mem::take(&mut self.points.ticks);
+        self.phases.add_part(Part::Sources, ticks);
+    }
+}
+
+/// [`Block::add_sources`] once b is known.
+struct AddSources<'a> {
     /// The block.
     pub block: Block<'a>,
     /// With b, the masses, and v of the stage.
@@ -165,7 +209,7 @@ impl SourceStage<'_> {
 /// The rest of the work of sources at the end of a step: the impulse with the mean of the momenta before and after. It is what a
 /// uniform source gives to the kinetic energy, exactly: the averages of ADER's predictor, which does not see the neighbours,
 /// would miss it by what the faces correct.
-pub(super) struct SourceEnd<'a> {
+struct SourceEnd<'a> {
     /// By node.
     pub masses: &'a [F8],
     /// Momenta before the step, [2][node].
