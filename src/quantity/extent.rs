@@ -1,6 +1,6 @@
 //! How far the body reaches along an axis, in its current configuration.
 
-use super::places::{on_face, with_ends};
+use super::places::with_ends;
 use super::{Places, Quantity, Seen};
 use crate::error::Error;
 use crate::mesh::{FACES, Mesh, map};
@@ -51,7 +51,7 @@ fn boundary(seen: &Seen) -> Vec<(usize, [f64; 2])> {
     for (cell, &(block, lane)) in blocks.slot.iter().enumerate() {
         let outside = |face: &usize| matches!(blocks.neighbours[block][*face][lane], Neighbour::Boundary(_));
         for face in (0..FACES).filter(outside) {
-            out.extend(line.iter().map(|&along| (cell, on_face(face, along))));
+            out.extend(line.iter().map(|&along| (cell, map::on_face(face, along))));
         }
     }
     out

@@ -1,6 +1,5 @@
 //! The force that a boundary exerts on the body.
 
-use super::places::on_face;
 use super::{Quantity, Seen};
 use crate::boundary::{FacePoint, Moment, TimeNode, WholeFace};
 use crate::error::Error;
@@ -74,13 +73,13 @@ impl Force {
         let map = seen.mesh.map(cell);
         let trace = |(i, along): (usize, &f64)| {
             let (normal, _) = metric.at_face_of(lane, face, i);
-            let point = solution.at(cell, on_face(face, *along));
+            let point = solution.at(cell, map::on_face(face, *along));
             let (f, t) = (point.deformation, times(point.response(law).piola, normal));
             Trace { f, v: point.velocity, t, c: law.speeds(f, normal) }
         };
         let basis = &solution.basis;
         let inside: Vec<_> = basis.nodes.iter().enumerate().map(trace).collect();
-        let place = |along: f64| map::position(&map, on_face(face, along));
+        let place = |along: f64| map::position(&map, map::on_face(face, along));
         let at = |(i, s): (usize, &f64)| FacePoint { x: place(*s), normal: metric.at_face_of(lane, face, i).0, medium };
         let points: Vec<_> = basis.nodes.iter().enumerate().map(at).collect();
         let mut own: Vec<_> = points.iter().map(|_| memory.next().unwrap_or_default()).collect();

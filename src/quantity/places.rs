@@ -154,7 +154,7 @@ impl Places {
         let edges = mesh.edges.iter().filter(|edge| edge.group == group);
         let of = |edge: &crate::mesh::BoundaryEdge| {
             let (cell, face) = (edge.cell, edge.face);
-            line.iter().map(|&along| Place { cell, xi: on_face(face, along), s: 0.0 }).collect::<Vec<_>>()
+            line.iter().map(|&along| Place { cell, xi: map::on_face(face, along), s: 0.0 }).collect::<Vec<_>>()
         };
         edges.flat_map(of).collect()
     }
@@ -182,10 +182,4 @@ impl Places {
 /// Nodes in [0, 1] and both ends.
 pub fn with_ends(nodes: &[f64]) -> Vec<f64> {
     [&[0.0], nodes, &[1.0]].concat()
-}
-
-/// The parent coordinates of a point of a face.
-pub(super) fn on_face(face: usize, along: f64) -> [f64; 2] {
-    let end = (face % 2) as f64;
-    if face < 2 { [end, along] } else { [along, end] }
 }

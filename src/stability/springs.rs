@@ -179,20 +179,11 @@ impl<'a> Faces<'a> {
         if across.flip { m - 1 - point } else { point }
     }
 
-    /// The factors of all nodes of a cell in the trace at a point of a face, from those of the line across it.
-    fn at_nodes(&self, end: &[f64], face: usize, point: usize, factor: f64) -> Vec<f64> {
-        let m = self.problem.scheme.operators.line.m;
-        let (first, stride) = if face < 2 { (point, m) } else { (point * m, 1) };
-        let mut out = vec![0.0; m * m];
-        end.iter().enumerate().for_each(|(i, end)| out[first + stride * i] = factor * end);
-        out
-    }
-
     /// rho0 c_p^2 of a cell at a point of a face, Pa.
     fn modulus(&self, cell: usize, face: usize, point: usize, normal: [f64; 2]) -> f64 {
         let (scheme, stride) = (&self.problem.scheme, self.problem.at_nodes());
         let n = scheme.operators.nodes();
-        let ends = self.at_nodes(&scheme.operators.line.ends[face % 2], face, point, 1.0);
+        let ends = scheme.operators.line.spread(&scheme.operators.line.ends[face % 2], face, point);
         let f = std::array::from_fn(|k| {
             ends.iter().zip(&self.base[cell * stride + k * n..]).map(|(end, f)| end * f).sum::<f64>()
         });

@@ -260,11 +260,16 @@ pub fn cofactors(cell: &impl Map, xi: [f64; 2]) -> [[f64; 2]; 2] {
     [[j[1][1], -j[0][1]], [-j[1][0], j[0][0]]]
 }
 
+/// Where on the parent cell the place s in [0, 1] of a face is.
+#[inline]
+pub fn on_face(face: usize, s: f64) -> [f64; 2] {
+    let end = (face % 2) as f64;
+    if face < 2 { [end, s] } else { [s, end] }
+}
+
 /// The unit outward normal at a place s in [0, 1] of a face, and |dX/ds| there, m.
 pub fn outward(cell: &impl Map, face: usize, s: f64) -> ([f64; 2], f64) {
-    let end = (face % 2) as f64;
-    let xi = if face < 2 { [end, s] } else { [s, end] };
-    let [a, b] = cofactors(cell, xi)[face / 2].map(|n| if face.is_multiple_of(2) { -n } else { n });
+    let [a, b] = cofactors(cell, on_face(face, s))[face / 2].map(|n| if face.is_multiple_of(2) { -n } else { n });
     let length = a.hypot(b);
     ([a / length, b / length], length)
 }

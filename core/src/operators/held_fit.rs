@@ -1,7 +1,7 @@
 //! The traces of the displacement of two cells at their face, fitted so that they do not jump where the displacement is smooth.
 
 use super::Line;
-use crate::mesh::map::{self, CellMap};
+use crate::mesh::map::{self, CellMap, on_face};
 use crate::quadrature::legendre;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, RowDVector};
 
@@ -81,35 +81,26 @@ impl<'a> Fit<'a> {
 
     /// Those between equal cells, and where the displacement is not smooth: at a boundary and between two laws.
     pub fn of_equal(&self, (_, face, _): AtFace) -> Vec<f64> {
-        let all = (0..self.line.m).map(|point| self.at_nodes(&self.line.held[face % 2], face, point));
+        let all = (0..self.line.m).map(|point| self.line.spread(&self.line.held[face % 2], face, point));
         all.flatten().collect()
     }
 
     /// T_k: the factors of the nodes in the trace at a point of a face.
     fn plain(&self, (_, face, flip): AtFace, point: usize) -> Vec<f64> {
-        self.at_nodes(&self.line.ends[face % 2], face, if flip { self.line.m - 1 - point } else { point })
+        self.line.spread(&self.line.ends[face % 2], face, if flip { self.line.m - 1 - point } else { point })
     }
 
     /// c0: what the traces of equal cells leave out, the part of the highest coefficient on the line through the point.
     fn left_out(&self, side: AtFace, point: usize) -> Vec<f64> {
         let (_, face, flip) = side;
         let at = if flip { self.line.m - 1 - point } else { point };
-        let held = self.at_nodes(&self.line.held[face % 2], face, at);
+        let held = self.line.spread(&self.line.held[face % 2], face, at);
         let difference: Vec<f64> = self.plain(side, point).iter().zip(held).map(|(plain, held)| plain - held).collect();
         // sum_a d_a u_a is the mean over the cell of u times the polynomial with the values d_a / w_a at the nodes; c_ij are the coefficients of it.
         let m = self.line.m;
         let weight = |a: usize| self.line.basis.weights[a / m] * self.line.basis.weights[a % m];
         let of = |mode: &Vec<f64>| mode.iter().zip(&difference).enumerate().map(|(a, (x, y))| x * y / weight(a)).sum();
         self.modes.iter().map(of).collect()
-    }
-
-    /// The factors of the nodes of a line across a face, at a point of it, among those of all nodes.
-    fn at_nodes(&self, line: &[f64], face: usize, point: usize) -> Vec<f64> {
-        let m = self.line.m;
-        let (first, stride) = if face < 2 { (point, m) } else { (point * m, 1) };
-        let mut out = vec![0.0; m * m];
-        line.iter().enumerate().for_each(|(i, factor)| out[first + stride * i] = *factor);
-        out
     }
 
     /// The polynomials at the nodes of both cells, `[polynomial][side][node]`. The places are counted from the middle of the face on either side, which are
@@ -200,12 +191,6 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 /// The orthonormal Legendre polynomial of degree i on [0, 1].
 fn normal(i: usize, x: f64) -> f64 {
     legendre(2.0 * x - 1.0).nth(i).map_or(0.0, |(p, _)| p * ((2 * i + 1) as f64).sqrt())
-}
-
-/// Where on the parent cell the place s in [0, 1] of a face is.
-fn on_face(face: usize, s: f64) -> [f64; 2] {
-    let end = (face % 2) as f64;
-    if face < 2 { [end, s] } else { [s, end] }
 }
 
 #[cfg(test)]

@@ -164,10 +164,7 @@ impl Operators {
         if let Some(factors) = self.held_traces.as_ref().and_then(|all| all.block(block)) {
             return factors[(face * m + point) * nodes..][..nodes].iter().map(|factor| factor.0[lane]).collect();
         }
-        let (first, stride) = if face < 2 { (point, m) } else { (point * m, 1) };
-        let mut out = vec![0.0; nodes];
-        self.line.held[face % 2].iter().enumerate().for_each(|(i, held)| out[first + stride * i] = *held);
-        out
+        self.line.spread(&self.line.held[face % 2], face, point)
     }
 
     /// Bytes held by matrices and metric terms.
@@ -209,6 +206,20 @@ pub struct Line {
 }
 
 impl Line {
+    /// The nodes a of the line across a face, at a point of it: the first, and how far it is to the next.
+    #[inline(always)]
+    pub fn across(&self, face: usize, point: usize) -> (usize, usize) {
+        if face < 2 { (point, self.m) } else { (point * self.m, 1) }
+    }
+
+    /// The factors of the nodes of the line across a face, at a point of it, among those of all nodes; the others are 0.
+    pub fn spread(&self, factors: &[f64], face: usize, point: usize) -> Vec<f64> {
+        let (first, stride) = self.across(face, point);
+        let mut out = vec![0.0; self.m * self.m];
+        factors.iter().enumerate().for_each(|(i, factor)| out[first + stride * i] = *factor);
+        out
+    }
+
     /// Tables of degree N.
     pub fn new(degree: usize) -> Self {
         let basis = Lagrange::new(degree);

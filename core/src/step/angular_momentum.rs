@@ -140,7 +140,7 @@ impl Block<'_> {
                     let moved = |axis: usize| -> f64 {
                         (0..m).map(|j| line.ends[face % 2][j] * u[axis * n + node(j)].0[lane]).sum()
                     };
-                    let at = map::position(&corners, super::segments::on_face(face, line.basis.nodes[point]));
+                    let at = map::position(&corners, map::on_face(face, line.basis.nodes[point]));
                     let lift = &lift[UNKNOWNS * (m * face + point) + DEFORMATION..];
                     // The flux of momentum is -t*, and its lifted numbers are those times the length of the face.
                     let force = [0, 1].map(|k| -line.basis.weights[point] * self.factor() * lift[k].0[lane]);

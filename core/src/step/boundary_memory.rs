@@ -119,9 +119,7 @@ impl Scheme {
         let (geometry, basis) = (&self.operators.geometry, &self.operators.line.basis);
         self.each_point_with_memory(|group, [block, face, lane, point]| {
             let count = self.boundaries[group].memory().len();
-            let (end, along) = ((face % 2) as f64, basis.nodes[point]);
-            let xi = if face < 2 { [end, along] } else { [along, end] };
-            let x = map::position(&geometry.map_of(block, lane), xi);
+            let x = map::position(&geometry.map_of(block, lane), map::on_face(face, basis.nodes[point]));
             if count > 0 {
                 out.push(PointWithMemory { group, x, numbers: first..first + count });
             }

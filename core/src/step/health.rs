@@ -52,10 +52,7 @@ impl Scheme {
                 [0, 1].map(|k| points.parent[2 * at + k].0[lane])
             }
             (Site::Point(node) | Site::Node(node), _) => basis.node_2d(node),
-            (Site::Face(face, point), _) => {
-                let (end, along) = ((face % 2) as f64, basis.nodes[point]);
-                if face < 2 { [end, along] } else { [along, end] }
-            }
+            (Site::Face(face, point), _) => map::on_face(face, basis.nodes[point]),
         }
     }
 

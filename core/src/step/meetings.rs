@@ -13,7 +13,7 @@
 
 use super::received::ReceivedBySide;
 use super::segments::{
-    Chord, DeepestOverlap, Face, MOST, OVERLAP, Point, REACH, SHORTEST, Segment, along, on_face, shared, whole,
+    Chord, DeepestOverlap, Face, MOST, OVERLAP, Point, REACH, SHORTEST, Segment, along, shared, whole,
 };
 use super::{Law, Scheme};
 use crate::contact::{Interaction, Pairs};
@@ -277,7 +277,7 @@ impl Meetings {
             let (block, local) = (face.face / FACES, face.face % FACES);
             let corners = operators.geometry.map_of(block, face.lane);
             let moved = |i: usize, s: f64| {
-                let x = map::position(&corners, on_face(local, s));
+                let x = map::position(&corners, map::on_face(local, s));
                 if !state.has_displacement() {
                     return x;
                 }

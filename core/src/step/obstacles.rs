@@ -1,7 +1,7 @@
 //! Faces of the boundary under conditions that are obstacles: how each goes on beyond its ends, and how deep bodies are in obstacles.
 
 use super::block::Block;
-use super::segments::{DeepestOverlap, on_face};
+use super::segments::DeepestOverlap;
 use super::{Scheme, Stage};
 use crate::boundary::{FacePoint, WholeFace};
 use crate::mesh::map;
@@ -136,7 +136,7 @@ impl Face {
         Self {
             group,
             place,
-            ends: [0.0, 1.0].map(|s| map::position(&map, on_face(face, s))),
+            ends: [0.0, 1.0].map(|s| map::position(&map, map::on_face(face, s))),
             bulge: map.bulge.map_or([0.0; 2], |bulge| bulge[face]),
             h: geometry.blocks[number].lane(lane).h,
             points: block.face_points(face, lane),

@@ -292,7 +292,7 @@ impl<const M: usize> crate::lane::Work for OfDegree<'_, M> {
         }
         for face in 0..FACES {
             for point in 0..M {
-                let (first, stride) = if face < 2 { (point, M) } else { (point * M, 1) };
+                let (first, stride) = line.across(face, point);
                 let mut f = [L::zero(); DEFORMATION];
                 for (i, l) in line.ends[face % 2].iter().enumerate() {
                     for (k, f) in f.iter_mut().enumerate() {

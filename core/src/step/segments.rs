@@ -74,18 +74,12 @@ impl Face {
 impl Face {
     pub fn new(operators: &Operators, law: &Law, [block, face, lane]: [usize; 3]) -> Self {
         let map = operators.geometry.map_of(block, lane);
-        let ends = [0.0, 1.0].map(|s| map::position(&map, on_face(face, s)));
+        let ends = [0.0, 1.0].map(|s| map::position(&map, map::on_face(face, s)));
         let bulge = map.bulge.map_or([0.0; 2], |bulge| bulge[face]);
         let h = operators.geometry.blocks[block].lane(lane).h;
         let speed = law.speeds([1.0, 0.0, 0.0, 1.0], [1.0, 0.0])[0];
         Self { face: FACES * block + face, lane, ends, bulge, h, stiffness: law.density() * speed * speed / h }
     }
-}
-
-/// Parent coordinates at s on a local face.
-pub(super) fn on_face(face: usize, s: f64) -> [f64; 2] {
-    let end = (face % 2) as f64;
-    if face < 2 { [end, s] } else { [s, end] }
 }
 
 /// A Gauss point of a segment.

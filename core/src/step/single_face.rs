@@ -33,9 +33,8 @@ impl SingleFace<'_> {
     #[inline(always)]
     pub fn point(&self, point: usize) -> FacePoint {
         let along = self.block.scheme.operators.line.basis.nodes[point];
-        let end = (self.face % 2) as f64;
-        let xi = if self.face < 2 { [end, along] } else { [along, end] };
-        FacePoint { x: map::position(&self.map, xi), normal: self.normal_and_length(point).0, medium: self.medium }
+        let x = map::position(&self.map, map::on_face(self.face, along));
+        FacePoint { x, normal: self.normal_and_length(point).0, medium: self.medium }
     }
 }
 

@@ -120,7 +120,7 @@ impl Scheme {
         for face in 0..FACES {
             let ends = &line.ends[face % 2];
             for point in 0..m {
-                let (first, stride) = if face < 2 { (point, m) } else { (point * m, 1) };
+                let (first, stride) = line.across(face, point);
                 let component = |k: usize| -> f64 {
                     ends.iter().enumerate().map(|(i, l)| l * u[k * n + first + stride * i].0[lane]).sum()
                 };

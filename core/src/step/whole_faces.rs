@@ -1,7 +1,7 @@
 //! The flux at faces whose condition looks at them as a whole.
 
 use super::block::Block;
-use super::segments::{MOST, on_face};
+use super::segments::MOST;
 use crate::boundary::{FacePoint, Moment, WholeFace};
 use crate::lane::F8;
 use crate::mesh::map;
@@ -33,7 +33,7 @@ impl Block<'_> {
         };
         let inside: Vec<_> = points.iter().zip(own.chunks_exact(width)).map(of).collect();
         let corners = scheme.operators.geometry.map_of(self.number, lane);
-        let ends = [0.0, 1.0].map(|s| map::position(&corners, on_face(face, s)));
+        let ends = [0.0, 1.0].map(|s| map::position(&corners, map::on_face(face, s)));
         let beyond = self.stage.obstacles.map_or([None; 2], |all| all.beyond([self.number, face, lane]));
         let bulge = corners.bulge.map_or([0.0; 2], |bulge| bulge[face]);
         let whole = WholeFace { ends, bulge, points: &points, inside: &inside, basis: &line.basis, beyond };
