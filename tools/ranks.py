@@ -249,11 +249,11 @@ def goes_on(work):
     print("4, 3 and 1 ranks: the same bytes as without a stop", flush=True)
 
 
-# Runs a command, and says how much memory it had at most, KiB.
+# Runs a command, and writes into a file of its own how much memory it had at most, KiB: what ranks print side by side gets mixed.
 PEAK = """
-import resource, subprocess, sys
-code = subprocess.run(sys.argv[1:]).returncode
-print("peak", resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss, flush=True)
+import os, pathlib, resource, subprocess, sys
+code = subprocess.run(sys.argv[2:]).returncode
+pathlib.Path(f"{sys.argv[1]}_{os.getpid()}").write_text(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss))
 sys.exit(code)
 """
 
@@ -266,11 +266,11 @@ def of_memory(work):
     peaks = {}
     for ranks in (1, 4):
         run = [SHARED, "run", SMALL, "--threads", "1", *changes, "--out", work / f"memory_{ranks}"]
-        job = Job(of_ranks(ranks, sys.executable, "-c", PEAK, *run), work)
+        job = Job(of_ranks(ranks, sys.executable, "-c", PEAK, work / f"peak_of_{ranks}", *run), work)
         out, errors = job.said()
         check(job.process.returncode == 0, f"memory of {ranks} ranks", out, errors)
-        peaks[ranks] = [int(line.split()[1]) / 1024 for line in out.splitlines() if line.startswith("peak ")]
-        check(len(peaks[ranks]) == ranks, "a line of each rank", out)
+        peaks[ranks] = [int(peak.read_text()) / 1024 for peak in work.glob(f"peak_of_{ranks}_*")]
+        check(len(peaks[ranks]) == ranks, "a file of each rank", out)
     check_same("memory", work / "memory_1", work / "memory_4")
     # 8 numbers (displacement) at 9 nodes of each cell, MiB.
     state = 340 * 170 * 8 * 9 * 8 / 2**20

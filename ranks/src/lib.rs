@@ -5,9 +5,11 @@
 //! However a run ends, all ranks end. What they can agree on ends them all with the exit code of `dgmpm`. Where one of them panics or no
 //! longer answers, it or those who wait for it end the job ([`engine`]).
 
-#![forbid(unsafe_code)]
+// But for one call of the allocator.
+#![deny(unsafe_code)]
 #![deny(missing_docs)]
 
+mod allocator;
 mod arguments;
 pub mod engine;
 mod threads;
@@ -20,6 +22,7 @@ use std::sync::Arc;
 
 /// The program on the ranks that MPI has started, this process among them; its exit code is the same on all of them.
 pub fn main() -> ExitCode {
+    allocator::give_large_pieces_back();
     // Steps run on threads, and messages go from this one.
     let mpi = match Mpi::init_thread(ThreadLevel::Funneled) {
         Ok(mpi) => mpi,
