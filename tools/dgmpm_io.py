@@ -14,6 +14,7 @@ Needs numpy and h5py; meshio or DOLFINx only where their objects are asked for. 
 
 Positions are those of the initial configuration. Numbers are in SI units, per metre of thickness. A snapshot has the unknowns that
 dgmpm steps (seals of files are not checked here: `dgmpm verify` does); stresses are made from them by the law of the scene and are in what `dgmpm export` writes.
+docs/files.md has the layout of snapshots.
 """
 
 import json

@@ -12,7 +12,7 @@ const FORMULAS: &[(&str, &str, &str)] = &[
     ("[[boundary]]", "free", "t* = 0, v* = v - Z^-1 t"),
     ("[[boundary]]", "clamped", "v* = 0, t* = t - z_p v"),
     ("[[boundary]]", "velocity", "v* = v_d(X, t), t* = t + z_p (v_d - v)"),
-    ("[[boundary]]", "traction", "t* = t_d(X, t), v* = v + Z^-1 (t_d - t)"),
+    ("[[boundary]]", "traction", "t* = t_d(X, t), v* = v + theta (t_d - t) / z_p"),
     ("[[boundary]]", "absorbing", "v* = (v - Z^-1 t) / 2, t* = (t - Z v) / 2"),
     (
         "[[boundary]]",

@@ -29,11 +29,11 @@ const THRESHOLD: Parameter = Parameter::new(
     Preset::Number(1.0),
 );
 
-/// Whether lost cells are stepped again at order 0.
+/// Whether lost cells are stepped again with degree 0.
 const fn rescue(default: bool) -> Parameter {
     Parameter::new(
         "rescue",
-        "whether cells that a step loses, or whose J falls below .8 of that of their mean F, are stepped again at order 0",
+        "whether cells that a step loses, or whose J falls below .8 of that of their mean F, are stepped again with degree 0",
         "",
         Form::Boolean,
         Preset::Boolean(default),

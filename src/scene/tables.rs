@@ -251,7 +251,7 @@ pub(super) const SCHEME: &[Parameter] = &[
     ),
     key(
         "springs",
-        "whether springs in the faces give back what jumps of traction move them by: elastic bodies that vibrate or carry loads for long keep their energy; flux `dual`",
+        "whether springs in the faces pull back what jumps of the traction have moved them by: elastic bodies that vibrate or carry loads for long keep more of their energy, for 10 % more time; flux `dual`, see docs/method.md",
         "",
         Form::Boolean,
         Preset::Boolean(false),

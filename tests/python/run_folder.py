@@ -7,6 +7,7 @@ import logging
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[2] / "tools")]
@@ -101,11 +102,24 @@ def check_dolfinx(state, points):
         check(f"DOLFINx: {name} at points", near(values, state.at(points, name), 1e-12))
 
 
+def check_page(folder):
+    """docs/files.md names all datasets of a snapshot with their number of axes."""
+    page = (Path(__file__).resolve().parents[2] / "docs" / "files.md").read_text()
+    rows = [line.split(" | ") for line in page.splitlines() if line.startswith("| `")]
+    shapes = {name.strip("| `"): row[1] for row in rows if len(row) == 3 for name in row[0].split(", ")}
+    with h5py.File(sorted((folder / "snapshots").glob("*.h5"))[-1]) as file:
+        for name, data in file.items():
+            shape = shapes.get(name, "")
+            axes = 1 if shape == "one number" else shape.count(",") + 1
+            check(f"docs/files.md has `{name}` with {axes} axes", shape and (data.ndim == axes or data.size == 1))
+
+
 def main(folder):
     run = dgmpm_io.Run(folder)
     states = list(run.snapshots())
     check(f"{len(states)} snapshots", len(states) > 1 and states[0].time < states[-1].time)
     check_ledger(run, states)
+    check_page(run.folder)
     points = check_places(states[-1])
     check_meshio(states[-1], run.folder)
     check_dolfinx(states[-1], points)

@@ -93,7 +93,7 @@ DISC = Case(
     "A linear elastic disc vibrates in its first radial mode, v_r = J1(z r) cos(w t). After one period the velocity "
     "must be that of the start: the error is the relative L2 difference of the two. The rim is curved, by cells of "
     "order 2; with straight cells the disc is a polygon, whose error holds the order at 2 (degree 2 and 3 alike: 1.0e-3 "
-    "on 6 x 6 cells a block, 2.4e-4 on 12 x 12). A parabola differs from a circle by the fourth power of the cell, so "
+    "on 6 x 6 cells a block, that is, in each of the patches of the geometry that Gmsh meshes; 2.4e-4 on 12 x 12). A parabola differs from a circle by the fourth power of the cell, so "
     "that degree 4 is as good as degree 3.",
     [
         Line(
