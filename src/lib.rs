@@ -120,7 +120,7 @@ pub use state::State;
 pub use step::{Control, Loss, Method, Motion, Relax, Scheme, Survey, Sweeps, Tableau, Totals, cfl};
 
 // Several programs that step a body together.
-pub use exchange::Exchange;
+pub use exchange::{BlockGraph, Exchange};
 
 // What a crate may add: laws, fluxes, conditions, sources, corrections, observers.
 pub use boundary::{

@@ -25,8 +25,27 @@ pub trait Exchange: Debug + Send + Sync {
     /// everywhere.
     fn gather(&self, all: &mut [f64], first: &[usize]);
 
+    /// The part of each block, from 0 to below the number of ranks, such that parts are of nearly equal weight and few faces lie between
+    /// them. `None`, as by default: runs of blocks in their order. Every rank finds the same.
+    fn parts(&self, _: &BlockGraph) -> Option<Vec<usize>> {
+        None
+    }
+
     /// Waits until all ranks have come here, however long one of them works alone. By default it does nothing: the next call waits.
     fn wait(&self) {}
+}
+
+/// The graph of the blocks of a body, which each have eight cells: what ranks divide.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BlockGraph {
+    /// Where the edges of each block begin in `near` and `faces`, and the end of the last ones.
+    pub first: Vec<usize>,
+    /// The block at the other end of each edge; each edge stands at both of its blocks.
+    pub near: Vec<usize>,
+    /// Of how many faces of blocks the traces would be sent, if the blocks of an edge were of two ranks.
+    pub faces: Vec<usize>,
+    /// What each block costs in a step: an estimate, ns.
+    pub weights: Vec<u64>,
 }
 
 /// A number of each rank, known to all of them.

@@ -3,7 +3,8 @@
 //! A rank that waits looks at its messages again and again, lets other processes run in between, and looks at the clock: MPI itself would
 //! wait for ever for a rank that has stopped. What cannot go on ends all ranks by MPI_Abort.
 
-use dgmpm::Exchange;
+use crate::partition::Partition;
+use dgmpm::{BlockGraph, Exchange};
 use ferrompi::{Communicator, Request, Scope};
 use std::io::Write;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -36,6 +37,7 @@ pub struct Engine {
     rank: usize,
     ranks: usize,
     patience: Duration,
+    partition: Partition,
     /// The only thread that may call MPI.
     thread: ThreadId,
     meter: Meter,
@@ -88,11 +90,11 @@ type Pending<'s> = (Option<usize>, Request<'s>);
 
 impl Engine {
     /// This process among all that MPI has started, with so much patience with the others.
-    pub fn new(world: Communicator, patience: Duration) -> Self {
+    pub fn new(world: Communicator, patience: Duration, partition: Partition) -> Self {
         let of = |number: i32| usize::try_from(number).unwrap_or(0);
         let (rank, ranks) = (of(world.rank()), of(world.size()).max(1));
         let (thread, meter) = (thread::current().id(), Meter::default());
-        Self { world, rank, ranks, patience, thread, meter }
+        Self { world, rank, ranks, patience, partition, thread, meter }
     }
 
     /// Whether it is rank 0.
@@ -237,6 +239,10 @@ impl Exchange for Engine {
         Meter::add(&self.meter.gathers, 1);
         Meter::add(&self.meter.given, first[self.rank + 1] - first[self.rank]);
         Meter::add(&self.meter.waited[1], clock.elapsed().as_nanos() as usize);
+    }
+
+    fn parts(&self, graph: &BlockGraph) -> Option<Vec<usize>> {
+        self.partition.parts(graph, self.ranks)
     }
 
     fn wait(&self) {

@@ -12,6 +12,7 @@
 mod allocator;
 mod arguments;
 pub mod engine;
+mod partition;
 mod threads;
 
 use arguments::Arguments;
@@ -35,7 +36,7 @@ pub fn main() -> ExitCode {
     };
     engine::end_all_on_panic(mpi.world());
     let parsed = Arguments::parse(std::env::args_os());
-    let engine = Arc::new(Engine::new(mpi.world(), parsed.patience));
+    let engine = Arc::new(Engine::new(mpi.world(), parsed.patience, parsed.partition));
     let code = run(&engine, parsed);
     drop(mpi);
     code
@@ -51,8 +52,8 @@ fn run(engine: &Arc<Engine>, parsed: Arguments) -> ExitCode {
     if let Some(rank) = engine.first_that_differs(arguments::hash(std::env::args_os().skip(1).collect::<Vec<_>>())) {
         return refuse(&format!("rank {rank} has another command line than rank 0"), "give all ranks the same one");
     }
-    if let Some(why) = parsed.fault {
-        return refuse(&why, "give a number of seconds above 0, such as --patience 60");
+    if let Some((what, remedy)) = parsed.fault {
+        return refuse(&what, remedy);
     }
     if parsed.help && engine.is_first() {
         println!("{}\n", arguments::HELP);

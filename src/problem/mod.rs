@@ -57,6 +57,8 @@ mod store;
 mod summary;
 mod verify;
 
+use ranks::divided;
+
 pub use again::Again;
 pub use body::{Body, Files};
 pub use checkpoints::{Checkpoints, Resumed};
@@ -213,11 +215,15 @@ impl<'a> Setup<'a> {
             Some(store) => store.operators(scene, body)?,
             None => (body.operators(scene)?, String::new()),
         };
-        let mut scheme = scene.build_scheme(&body.mesh, operators, kernel)?;
-        scheme.corrections.extend(corrections);
-        if let Some(exchange) = exchange {
-            scheme = scheme.with_exchange(exchange);
-        }
+        let build = |operators| {
+            let mut scheme = scene.build_scheme(&body.mesh, operators, kernel)?;
+            scheme.corrections.extend(corrections.iter().cloned());
+            Ok(match &exchange {
+                Some(exchange) => scheme.with_exchange(exchange.clone()),
+                None => scheme,
+            })
+        };
+        let scheme = divided(build(operators)?, scene, body, build)?;
         built::refuse(&[
             (built::SOURCES, !scheme.sources.is_empty(), "a source"),
             (built::CORRECTIONS, !scheme.corrections.is_empty() || scheme.rescue.is_some(), "a limiter or the rescue"),

@@ -1,12 +1,28 @@
 //! A problem that several ranks run together. All of them step it; the first one alone has the folder of the run.
 
-use super::Problem;
+use super::{Body, Problem};
 use crate::error::{Error, Result};
 use crate::exchange::{self, first_that_differs};
 use crate::lane::Kernel;
 use crate::observe::{NewGrid, Observer, Schedule, View};
+use crate::operators::Operators;
 use crate::run::{Folder, Report};
+use crate::scene::Scene;
+use crate::step::Scheme;
 use crate::words::Saved;
+
+/// With the blocks in the order in which ranks have them: a `scheme` on a body, built again where the engine divides its blocks.
+pub(super) fn divided(
+    scheme: Scheme,
+    scene: &Scene,
+    body: &Body,
+    build: impl FnOnce(Operators) -> Result<Scheme>,
+) -> Result<Scheme> {
+    let Some(partition) = scheme.partition() else { return Ok(scheme) };
+    let links = scene.links(&body.mesh)?;
+    let operators = scheme.operators.in_order(&body.mesh, &links, &body.material, &partition.order);
+    Ok(build(operators)?.with_partition(partition))
+}
 
 impl Problem {
     /// Whether this rank writes the files of the run: the first one does, and who runs alone.

@@ -5,6 +5,7 @@
 use super::moved::{Moved, scale};
 use super::outcome::{Clock, Outcome, columns};
 use super::outputs::schedule_of;
+use super::ranks::divided;
 use super::{Body, Problem, Recent};
 use crate::boundary::{Boundary, Free};
 use crate::cloud::Cloud;
@@ -232,11 +233,11 @@ impl Problem {
         let operators = operators(scene, &body)?;
         clock.lap("matrices");
         // Laws, conditions, sources and corrections may be the user's own: they go on as they are.
-        let after = scheme.on_grid(
-            operators,
-            conditions_on(&body.mesh, &old.mesh, scheme),
-            &self.scene.pairings(&body.mesh),
-        )?;
+        let on_grid = |operators| {
+            let conditions = conditions_on(&body.mesh, &old.mesh, scheme);
+            scheme.on_grid(operators, conditions, &self.scene.pairings(&body.mesh))
+        };
+        let after = divided(on_grid(operators)?, scene, &body, on_grid)?;
         regrid::curl_free(&after, state.components, &transfer.same, &mut transfer.u);
         let new = State::pack(&after.operators.blocks, n, state.components, &transfer.u);
         let mut new = State { time: state.time, step: state.step, ..new }.holding(state, &transfer.same, n);

@@ -49,6 +49,7 @@ pub fn observer(number: usize) -> String {
 
 /// All that lives on.
 pub(super) fn parts(
+    scheme: &Scheme,
     motion: &Motion,
     report: &Report,
     pause: &mut dyn Pause,
@@ -62,7 +63,7 @@ pub(super) fn parts(
         Ok::<(), Error>(())
     };
     part(MOTION, &mut |to| {
-        motion.save(to);
+        motion.save(scheme, to);
         Ok(())
     })?;
     part(REPORT, &mut |to| {

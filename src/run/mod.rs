@@ -295,7 +295,7 @@ impl Run<'_, '_> {
         (pause, motion): (&mut dyn Pause, &Motion),
         report: &Report,
     ) -> Result<(), Error> {
-        let parts = keep::parts(motion, report, pause, &mut self.observers)?;
+        let parts = keep::parts(self.scheme, motion, report, pause, &mut self.observers)?;
         keep.keep(&Moment { scheme: self.scheme, state: motion.seen(), parts })
     }
 

@@ -33,6 +33,11 @@ pub struct HeldTraces {
 }
 
 impl HeldTraces {
+    /// The same for blocks in another order: place k has block `order[k]`.
+    pub(super) fn in_order(self, order: &[usize]) -> Self {
+        Self { place: order.iter().map(|&block| self.place[block]).collect(), ..self }
+    }
+
     /// Those of a mesh; none where all cells are equal, and at degree 0, which holds nothing.
     pub fn of(mesh: &Mesh, blocks: &Blocks, line: &Line) -> Option<Self> {
         if line.m < 2 {

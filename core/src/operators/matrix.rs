@@ -102,6 +102,11 @@ fn lanes_of<S>(all: &[Option<S>], classes: [usize; LANES]) -> Option<[&S; LANES]
 }
 
 impl<S, O> Pool<S, O> {
+    /// The same for blocks in another order: place k has block `order[k]`.
+    pub(super) fn in_order(self, order: &[usize]) -> Self {
+        Self { share: order.iter().map(|&block| self.share[block]).collect(), ..self }
+    }
+
     /// Shares `build(class)` among blocks of one class, `interleave`s the classes of the others. What is in no further block is dropped
     /// on the way, so that matrices of single cells are not held twice.
     pub fn new(blocks: &[[usize; LANES]], class: &[usize], all: Vec<S>, interleave: impl Fn([&S; LANES]) -> O) -> Self {

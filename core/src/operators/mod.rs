@@ -117,6 +117,16 @@ impl Operators {
         Self { degree: needs.degree, line, blocks, geometry, held_traces, points, curl_free, key: String::new() }
     }
 
+    /// The same with `blocks`, the k-th of which is today's block `order[k]`.
+    pub(crate) fn with_blocks(self, mesh: &Mesh, blocks: Blocks, order: &[usize]) -> Self {
+        let Self { degree, line, held_traces, points, curl_free, key, .. } = self;
+        let geometry = Geometry::new(mesh, &blocks, &line);
+        let held_traces = held_traces.map(|traces| traces.in_order(order));
+        let points = points.map(|points| points.in_order(order));
+        let curl_free = curl_free.map(|free| CurlFree { pool: free.pool.in_order(order), ..free });
+        Self { degree, line, blocks, geometry, held_traces, points, curl_free, key }
+    }
+
     /// With the hash of their input.
     #[must_use]
     pub fn with_key(self, key: String) -> Self {

@@ -91,6 +91,26 @@ impl Points {
         out
     }
 
+    /// The same for blocks in another order: place k has block `order[k]`.
+    pub(super) fn in_order(self, order: &[usize]) -> Self {
+        let mut out = Self {
+            first: vec![0],
+            first_metric: vec![0],
+            metric: vec![],
+            parent: vec![],
+            count: vec![],
+            pool: self.pool,
+        };
+        for &block in order {
+            out.metric.extend_from_slice(&self.metric[self.first_metric[block]..self.first_metric[block + 1]]);
+            out.parent.extend_from_slice(&self.parent[2 * self.first[block]..2 * self.first[block + 1]]);
+            out.count.push(self.count[block]);
+            out.first.push(out.parent.len() / 2);
+            out.first_metric.push(out.metric.len());
+        }
+        Self { pool: out.pool.in_order(order), ..out }
+    }
+
     /// Stores the metric of a block as the predictor needs it. If each lane has its own dense matrices, these take in
     /// the metric, as derivatives along X. If the metric is the same at all points (affine cells, to rounding), it is
     /// stored once.

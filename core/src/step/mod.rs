@@ -45,6 +45,7 @@ mod numbers;
 mod obstacles;
 mod outside;
 mod parts;
+mod partition;
 pub mod phase;
 mod predictor;
 mod ranks;

@@ -84,10 +84,13 @@ impl Motion {
     }
 
     /// Saves what the next step and observers look at beside the state: its survey, and what corrections did in its cells.
-    pub fn save(&self, to: &mut Words) {
+    pub fn save(&self, scheme: &Scheme, to: &mut Words) {
         let speed = self.survey.speed.iter().flat_map(|speed| [speed.fastest, speed.prestress]);
-        to.blocks(&speed.collect::<Vec<_>>()).real(self.survey.fastest).real(self.survey.min_j);
-        to.blocks(self.work.treated());
+        to.blocks(&scheme.in_first_order(&speed.collect::<Vec<_>>(), 2))
+            .real(self.survey.fastest)
+            .real(self.survey.min_j);
+        let treated = self.work.treated();
+        to.blocks(&scheme.in_first_order(treated, treated.len() / scheme.operators.blocks.len().max(1)));
     }
 
     /// Takes the place of [`Motion::survey`] for a state that was saved.
@@ -100,9 +103,10 @@ impl Motion {
             let what = "the checkpoint is of another grid or of a run with another limiter";
             return Err(Error::input(what, "resume the run with its own scene and files"));
         }
+        let (speed, many) = (scheme.in_own_order(&speed, 2), treated.len() / scheme.operators.blocks.len().max(1));
         let of = |[fastest, prestress]: &[F8; 2]| Speeds { fastest: *fastest, prestress: *prestress };
         self.survey = Survey { speed: speed.as_chunks().0.iter().map(of).collect(), fastest, min_j };
-        self.work.set_treated(treated);
+        self.work.set_treated(scheme.in_own_order(&treated, many));
         Ok(())
     }
 

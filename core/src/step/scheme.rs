@@ -2,6 +2,7 @@
 
 use super::boundary_memory::BoundaryMemory;
 use super::meetings::{Contacts, Pairing};
+use super::partition::Partition;
 use super::{Control, Correction, Flux, Histories, Law, Rescue, Sweeps, Tableau};
 use crate::basis::TimeBasis;
 use crate::boundary::Boundary;
@@ -72,6 +73,8 @@ pub struct Scheme {
     pub(super) bodies: Option<super::angular_momentum::Bodies>,
     /// The ranks that step the body together; none where it runs alone.
     pub(super) exchange: Option<Arc<dyn Exchange>>,
+    /// Which blocks each rank has; none where ranks have runs of equal weight.
+    pub(super) partition: Option<Partition>,
     /// The instruction set.
     pub kernel: Kernel,
     /// Hash of the scene that it was made from, for files that say where a state comes from; empty where there is none.
@@ -143,6 +146,7 @@ impl Scheme {
             sees_faces,
             bodies: None,
             exchange: None,
+            partition: None,
             kernel,
             scene: String::new(),
         })

@@ -50,9 +50,10 @@ impl Tiles {
             contacts.link(&mut graph);
         }
         let (threads, weights) = (rayon::current_num_threads().max(1), scheme.weights());
-        let plan = match &scheme.exchange {
-            Some(exchange) => Plan::of_tiles(&graph, &weights, stages, threads * exchange.ranks()),
-            None => Plan::new(&graph, &weights, stages, threads),
+        let plan = match (&scheme.exchange, &scheme.partition) {
+            (Some(_), Some(parts)) => Plan::of_parts(&graph, &weights, stages, &parts.first, threads),
+            (Some(exchange), None) => Plan::of_tiles(&graph, &weights, stages, threads * exchange.ranks()),
+            (None, _) => Plan::new(&graph, &weights, stages, threads),
         };
         // Corrections of stages need all blocks of a stage at once.
         let plan = if scheme.corrects_stages() { plan.by_stages(stages) } else { plan };

@@ -107,6 +107,15 @@ impl Plan {
         Planner::new(graph, stages, divide(weights, tiles)).plan()
     }
 
+    /// A plan for parts that begin at `first`, each of so many tiles of nearly equal weight and of at least as many blocks.
+    pub fn of_parts(graph: &[Vec<usize>], weights: &[u64], stages: usize, first: &[usize], tiles: usize) -> Self {
+        let part = |ends: &[usize]| {
+            let shift = move |run: Range<usize>| run.start + ends[0]..run.end + ends[0];
+            divide(&weights[ends[0]..ends[1]], tiles).into_iter().map(shift).collect::<Vec<_>>()
+        };
+        Planner::new(graph, stages, first.windows(2).flat_map(part).collect()).plan()
+    }
+
     /// The same tiles stage by stage: all blocks begin a stage in one phase, and finish it in the next one.
     pub fn by_stages(mut self, stages: usize) -> Self {
         let (tiles, blocks) = (self.tiles.len(), self.tiles.last().map_or(0, |tile| tile.range.end));
