@@ -165,7 +165,7 @@ fn spatial(t: [f64; 4], t33: f64) -> [f64; 9] {
 /// Cauchy stress [11, 12, 22, 33], Pa.
 fn stress(law: &Law, at: &Point) -> [f64; 4] {
     let response = at.response(law);
-    cauchy(at.deformation, response.piola, response.piola33)
+    cauchy(at.stressed, response.piola, response.piola33)
 }
 
 /// sqrt(3/2 s:s) of the deviator of [s11, s12, s22, s33].
@@ -193,7 +193,7 @@ mod tests {
         let with_history = Law::from(J2::new(1.0, 0.3, 1.0, 0.01, 0.1));
         let fields = Field::of_laws(&[elastic.clone(), with_history.clone()]);
         let (deformation, history) = ([1.1, 0.1, 0.0, 0.9], vec![1.1, 0.8, 0.1, 1.2, 0.3]);
-        let at = Point { deformation, velocity: [1.0, 2.0], displacement: [0.0; 2], history };
+        let at = Point { deformation, velocity: [1.0, 2.0], displacement: [0.0; 2], history, stressed: deformation };
         let of = |law: &Law, field: Field| {
             let mut values = Vec::new();
             field.push(law, &at, &mut values);

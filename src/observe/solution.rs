@@ -1,5 +1,6 @@
-//! The discrete solution as a function of the point: polynomials of F and p, stresses by the law from that F and the
-//! internal variables of the nearest point of the cell, which are never interpolated.
+//! The discrete solution as a function of the point: polynomials of F and p, stresses by the law from that F. Internal variables are never
+//! interpolated: a law that has some gives the stress of the nearest point of the cell where they stand, from F there. (From F of the
+//! place itself, whose part that yields differs from that of the point, it would be far beyond the yield stress, or far below.)
 
 use crate::basis::Lagrange;
 use crate::cloud::Cloud;
@@ -20,12 +21,14 @@ pub struct Point {
     pub displacement: [f64; 2],
     /// Internal variables of the nearest point of the cell.
     pub history: Vec<f64>,
+    /// F from which the law gives the stress: that of the point of the internal variables, where the law has some.
+    pub stressed: [f64; 4],
 }
 
 impl Point {
-    /// The response of a law at this point, from these internal variables.
+    /// The response of a law at this point.
     pub fn response(&self, law: &Law) -> Response {
-        law.response(self.deformation, &self.history)
+        law.response(self.stressed, &self.history)
     }
 }
 
@@ -55,15 +58,14 @@ impl Memory {
         Some(Self { places, first, values })
     }
 
-    /// The internal variables of the point of a cell that is nearest to xi.
-    fn at(&self, cell: usize, law: &Law, xi: [f64; 2]) -> Vec<f64> {
+    /// The point of a cell that is nearest to xi, and its internal variables; none where the law of the cell has none.
+    fn at(&self, cell: usize, law: &Law, xi: [f64; 2]) -> Option<([f64; 2], Vec<f64>)> {
         let (mut out, count) = (law.virgin(), law.history_len());
-        if count > 0 {
-            let point = history::nearest(self.places.of(cell).iter().copied(), xi);
-            let stored = self.values.iter().skip(self.first[cell] + count * point).take(count);
-            out.iter_mut().zip(stored).for_each(|(out, value)| *out = *value);
-        }
-        out
+        let points = Some(self.places.of(cell)).filter(|points| count > 0 && !points.is_empty())?;
+        let point = history::nearest(points.iter().copied(), xi);
+        let stored = self.values.iter().skip(self.first[cell] + count * point).take(count);
+        out.iter_mut().zip(stored).for_each(|(out, value)| *out = *value);
+        Some((points[point], out))
     }
 }
 
@@ -138,17 +140,27 @@ impl<'a> Solution<'a> {
     pub fn combine(&self, cell: usize, xi: [f64; 2], weights: &[f64]) -> Point {
         let n = weights.len();
         let start = cell * self.components * n;
-        let value = |k: usize| -> f64 {
+        let by = |weights: &[f64], k: usize| -> f64 {
             let nodes = &self.u[start + k * n..start + (k + 1) * n];
             nodes.iter().zip(weights).map(|(u, w)| u * w).sum()
         };
+        let value = |k: usize| by(weights, k);
         let law = self.law(cell);
-        let density = law.density();
+        let (density, deformation) = (law.density(), [0, 1, 2, 3].map(value));
+        let remembered = self.memory.as_ref().and_then(|memory| memory.at(cell, law, xi));
+        let (history, stressed) = match remembered {
+            None => (law.virgin(), deformation),
+            Some((place, history)) => {
+                let weights = self.basis.values_2d(place);
+                (history, [0, 1, 2, 3].map(|k| by(&weights, k)))
+            }
+        };
         Point {
-            deformation: [value(0), value(1), value(2), value(3)],
+            deformation,
             velocity: [value(4) / density, value(5) / density],
             displacement: if self.has_displacement() { [value(6), value(7)] } else { [0.0; 2] },
-            history: self.memory.as_ref().map_or_else(|| law.virgin(), |memory| memory.at(cell, law, xi)),
+            history,
+            stressed,
         }
     }
 }

@@ -13,6 +13,8 @@ pub struct Spot {
     weights: Vec<f64>,
     /// The point of the cell whose internal variables it has: the nearest one.
     nearest: usize,
+    /// The values of the basis at the place of this point, where the law has internal variables ([`Point::stressed`]).
+    remembered: Option<Vec<f64>>,
 }
 
 impl Spot {
@@ -20,8 +22,11 @@ impl Spot {
     pub fn new(scheme: &Scheme, cell: usize, xi: [f64; 2]) -> Self {
         let operators = &scheme.operators;
         let (block, lane) = operators.blocks.slot[cell];
-        let nearest = history::nearest(operators.places(block, lane).into_iter(), xi);
-        Self { block, lane, weights: operators.line.basis.values_2d(xi), nearest }
+        let (places, basis) = (operators.places(block, lane), &operators.line.basis);
+        let nearest = history::nearest(places.iter().copied(), xi);
+        let has_memory = scheme.laws[operators.blocks.material[block]].has_memory();
+        let remembered = places.get(nearest).filter(|_| has_memory).map(|place| basis.values_2d(*place));
+        Self { block, lane, weights: basis.values_2d(xi), nearest, remembered }
     }
 
     /// The law there.
@@ -33,13 +38,16 @@ impl Spot {
     pub fn of(&self, scheme: &Scheme, state: &State) -> Point {
         let n = self.weights.len();
         let start = self.block * state.components * n;
-        let value = |k: usize| -> f64 {
+        let by = |weights: &[f64], k: usize| -> f64 {
             let nodes = &state.u[start + k * n..start + (k + 1) * n];
-            nodes.iter().zip(&self.weights).map(|(u, w)| u.0[self.lane] * w).sum()
+            nodes.iter().zip(weights).map(|(u, w)| u.0[self.lane] * w).sum()
         };
-        let density = self.law(scheme).density();
+        let value = |k: usize| by(&self.weights, k);
+        let (density, deformation) = (self.law(scheme).density(), [0, 1, 2, 3].map(value));
+        let remembered = self.remembered.as_ref();
         Point {
-            deformation: [value(0), value(1), value(2), value(3)],
+            deformation,
+            stressed: remembered.map_or(deformation, |weights| [0, 1, 2, 3].map(|k| by(weights, k))),
             velocity: [value(4) / density, value(5) / density],
             displacement: if state.has_displacement() { [UNKNOWNS, UNKNOWNS + 1].map(value) } else { [0.0; 2] },
             history: scheme.internal_at(state, self.block, self.lane, self.nearest),

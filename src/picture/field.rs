@@ -151,6 +151,7 @@ mod tests {
             velocity: [0.0; 2],
             displacement: [0.0; 2],
             history: vec![],
+            stressed: [stretch, 0.0, 0.0, stretch],
         };
         assert!(shade.value(&law, &at(0.9)) > 0.0 && shade.value(&law, &at(1.1)) < 0.0);
     }

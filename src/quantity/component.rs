@@ -74,7 +74,7 @@ impl Component {
     pub fn exact(&self, exact: &dyn Exact, law: &Law, x: [f64; 2], time: f64) -> Option<f64> {
         let history = exact.internal(x, time).unwrap_or_else(|| law.virgin());
         let (deformation, velocity) = (exact.deformation(x, time), exact.velocity(x, time));
-        let at = Point { deformation, velocity, displacement: [0.0; 2], history };
+        let at = Point { deformation, velocity, displacement: [0.0; 2], history, stressed: deformation };
         (self.field != Field::Displacement).then(|| self.of(law, &at))
     }
 }

@@ -1,7 +1,7 @@
 //! The observer of all quantities of a run.
 
 use super::reading::Reading;
-use super::{Quantity, Seen, Statistic, When};
+use super::{Quantity, Seen, When};
 use crate::error::Error;
 use crate::exact::Exact;
 use crate::observe::{self, NewGrid, Observer, Schedule, View};
@@ -53,7 +53,7 @@ impl Gauge {
     /// For these quantities. `material` gives the law of each cell. Where an exact solution is given, its numbers are found too.
     pub fn new(all: Vec<Named>, material: &[usize], exact: Option<Arc<dyn Exact>>) -> Self {
         // States between start and end are looked at only where a quantity needs them.
-        let at_end = all.iter().all(|named| named.when == When::End);
+        let at_end = all.iter().all(|named| named.when == When::End && !named.quantity.is_metered());
         let times = if at_end { observe::When::At(vec![]) } else { observe::When::EverySteps(1) };
         let (schedule, expected) = (Schedule::new(times, false).with_end(), vec![None; all.len()]);
         let with_reading = |named: Named| {
@@ -81,8 +81,10 @@ impl Gauge {
         self.ended |= last;
         let seen = Seen::new(view.mesh, view.scheme, view.state, &self.material);
         for ((named, reading), expected) in self.all.iter_mut().zip(&mut self.expected) {
-            if reading.needs(time, view.dt) {
-                reading.take(time, named.quantity.of(&seen), named.quantity.integral(&seen));
+            match named.quantity.integral(&seen) {
+                Some(integral) => reading.take_step(time, integral),
+                None if reading.needs(time, view.dt) => reading.take(time, named.quantity.of(&seen)),
+                None => {}
             }
             let at = match named.when {
                 When::End => time,
@@ -98,8 +100,7 @@ impl Gauge {
 
 impl Observer for &mut Gauge {
     fn wants_forces(&self) -> bool {
-        let mean = |named: &Named| named.when == When::Over(Statistic::Mean);
-        self.all.iter().any(|(named, _)| mean(named) && named.quantity.is_metered())
+        self.all.iter().any(|(named, _)| named.quantity.is_metered())
     }
 
     fn schedule(&mut self) -> &mut Schedule {

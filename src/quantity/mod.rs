@@ -42,8 +42,11 @@ use std::cell::OnceCell;
 
 /// A number that a state has.
 pub trait Quantity {
-    /// The number of a state; NaN where the state has none, such as the width of a front that is not there.
-    fn of(&self, seen: &Seen) -> f64;
+    /// The number of a state; NaN where the state has none, such as the width of a front that is not there, and of a quantity that only
+    /// steps have ([`Quantity::integral`]).
+    fn of(&self, _seen: &Seen) -> f64 {
+        f64::NAN
+    }
 
     /// The number of the exact solution at a time, s. None where it is not known. `seen` is a state on the mesh: it has places
     /// and laws.
@@ -51,13 +54,13 @@ pub trait Quantity {
         None
     }
 
-    /// int q dt since the start of the run, in a state of a run that meters it: the mean over the run is then that of the steps, and
-    /// not that of the states between them.
+    /// int q dt since the start of the run, of a quantity that the steps meter ([`Quantity::is_metered`]): its number at a time is the mean
+    /// over the step that the time lies in.
     fn integral(&self, _seen: &Seen) -> Option<f64> {
         None
     }
 
-    /// Whether [`Quantity::integral`] is metered by runs that are asked to ([`crate::observe::Observer::wants_forces`]).
+    /// Whether it is known of steps, as the forces are that a run meters if it is asked to ([`crate::observe::Observer::wants_forces`]).
     fn is_metered(&self) -> bool {
         false
     }

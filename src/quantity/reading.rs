@@ -12,6 +12,8 @@ names! {
         Min = "min",
         /// The mean over time.
         Mean = "mean",
+        /// The largest absolute value.
+        Size = "abs",
     }
 }
 
@@ -46,11 +48,11 @@ pub(super) struct Reading {
     pub value: f64,
     /// Whether a number at a time is known, or can never be: the run has begun behind it.
     settled: bool,
-    /// Time and number of the state that was taken last.
+    /// Time and number of the state that was taken last; of what steps meter time and int q dt.
     last: Option<[f64; 2]>,
     /// Of a mean: int q dt over the steps between two states that have a number, and the sum of these steps, s.
     sum: [f64; 2],
-    /// Of a mean that the steps meter: time and int q dt of the first state.
+    /// Of what steps meter: time and int q dt of the first state.
     first: Option<[f64; 2]>,
 }
 
@@ -95,14 +97,28 @@ impl Reading {
         }
     }
 
-    /// Takes the number of a state, and int q dt up to it where the steps meter it.
-    pub fn take(&mut self, time: f64, value: f64, integral: Option<f64>) {
-        if let (When::Over(Statistic::Mean), Some(integral)) = (self.when, integral) {
-            let [start, first] = *self.first.get_or_insert([time, integral]);
-            // A single state is its own mean.
-            self.value = if time > start { (integral - first) / (time - start) } else { value };
-            return;
+    /// Takes int q dt up to a state, where steps meter it: q of the step that ends there is its mean over the step.
+    pub fn take_step(&mut self, time: f64, integral: f64) {
+        let [start, first] = *self.first.get_or_insert([time, integral]);
+        let before = self.last.replace([time, integral]);
+        let Some([begin, until]) = before.filter(|[begin, _]| time > *begin) else { return };
+        let mean = (integral - until) / (time - begin);
+        match self.when {
+            When::End => self.value = mean,
+            When::At(at) if !self.settled && time >= at => {
+                self.value = if self.when.is_before(start) { f64::NAN } else { mean };
+                self.settled = true;
+            }
+            When::At(_) => {}
+            When::Over(Statistic::Max) => self.value = self.value.max(mean),
+            When::Over(Statistic::Min) => self.value = self.value.min(mean),
+            When::Over(Statistic::Size) => self.value = self.value.max(mean.abs()),
+            When::Over(Statistic::Mean) => self.value = (integral - first) / (time - start),
         }
+    }
+
+    /// Takes the number of a state.
+    pub fn take(&mut self, time: f64, value: f64) {
         match (self.when, self.last) {
             (When::End, _) => self.value = value,
             (When::At(at), _) if time < at => {}
@@ -117,6 +133,7 @@ impl Reading {
             // A state without a number, such as one without a front, does not count.
             (When::Over(Statistic::Max), _) => self.value = self.value.max(value),
             (When::Over(Statistic::Min), _) => self.value = self.value.min(value),
+            (When::Over(Statistic::Size), _) => self.value = self.value.max(value.abs()),
             (When::Over(Statistic::Mean), Some([before, of_before])) if !of_before.is_nan() && !value.is_nan() => {
                 self.sum[0] += 0.5 * (time - before) * (value + of_before);
                 self.sum[1] += time - before;
@@ -140,7 +157,7 @@ mod tests {
         for n in 0..=10 {
             let (time, dt) = (0.1 * f64::from(n), if n == 10 { 0.0 } else { 0.1 });
             if reading.needs(time, dt) {
-                reading.take(time, q(time), None);
+                reading.take(time, q(time));
                 taken += 1;
             }
         }
@@ -167,12 +184,24 @@ mod tests {
     }
 
     #[test]
-    fn a_mean_that_steps_meter_is_the_integral_over_the_time() {
-        let mut reading = Reading::new(When::Over(Statistic::Mean));
-        reading.take(1.0, 7.0, Some(10.0));
-        assert_eq!(reading.value, 7.0);
-        reading.take(3.0, 0.0, Some(15.0));
-        assert_eq!(reading.value, 2.5);
+    fn what_steps_meter_is_their_mean_and_over_a_run_the_integral_over_the_time() {
+        // Steps from 1 to 3, 4 and 6 with means 2.5, -5 and 1.
+        let of = |when: When| {
+            let mut reading = Reading::new(when);
+            [[1.0, 10.0], [3.0, 15.0], [4.0, 10.0], [6.0, 12.0]].map(|[time, sum]| {
+                reading.take_step(time, sum);
+                reading.value
+            })
+        };
+        assert_eq!(of(When::Over(Statistic::Mean))[1..], [2.5, 0.0, 0.4]);
+        assert!(of(When::Over(Statistic::Mean))[0].is_nan());
+        assert_eq!(of(When::Over(Statistic::Max))[3], 2.5);
+        assert_eq!(of(When::Over(Statistic::Min))[3], -5.0);
+        assert_eq!(of(When::Over(Statistic::Size))[3], 5.0);
+        assert_eq!(of(When::End)[3], 1.0);
+        // The step that the time lies in, the first one at the start; none before it.
+        assert_eq!([1.0, 2.0, 3.5, 4.0, 6.0].map(|at| of(When::At(at))[3]), [2.5, 2.5, -5.0, -5.0, 1.0]);
+        assert!(of(When::At(0.5))[3].is_nan() && of(When::At(7.0))[3].is_nan());
     }
 
     #[test]

@@ -133,7 +133,7 @@ pub static QUANTITIES: Table<Kind> = Table::new(&[
     },
     Entry {
         name: "force",
-        about: "the force that the condition of a boundary group exerts on the body, per metre of thickness",
+        about: "the force on a boundary group by its condition and by what it touches, per metre of thickness: at a time the mean over its step",
         parameters: &[
             Parameter::required("group", "the group of edges in the mesh, such as \"left\"", "", Form::Text),
             AXIS,
