@@ -39,6 +39,12 @@ impl Schedule {
         Self { with_end: true, ..self }
     }
 
+    /// The same, which observes intervals of time or steps at the end of the run as well; a list of times is what was asked for.
+    pub fn with_end_of_intervals(self) -> Self {
+        let with_end = self.with_end || !matches!(self.when, When::At(_));
+        Self { with_end, ..self }
+    }
+
     /// Whether the state after `step` steps, at `time`, is due; `dt` is the step that follows, 0 at the end of the run.
     pub fn due(&mut self, step: usize, time: f64, dt: f64) -> bool {
         let last = dt == 0.0;
@@ -114,6 +120,8 @@ mod tests {
         assert_eq!(looks(Schedule::new(When::EverySteps(4), false)), [0, 4, 8]);
         assert_eq!(looks(Schedule::new(When::EverySteps(4), false).with_end()), [0, 4, 8, 10]);
         assert_eq!(looks(Schedule::new(When::EverySteps(5), false).with_end()), [0, 5, 10]);
+        assert_eq!(looks(Schedule::new(When::Every(0.4), false).with_end_of_intervals()), [0, 4, 8, 10]);
+        assert_eq!(looks(Schedule::new(When::At(vec![0.4]), false).with_end_of_intervals()), [4]);
     }
 
     #[test]

@@ -228,7 +228,11 @@ impl Shape<'_> {
         // Of each body the group that comes nearest to the other one.
         let facing = |which: usize, at: f64| {
             let own = self.groups.iter().zip(&of_group).filter(|(_, part)| **part == which).map(|(group, _)| *group);
-            let off = |group: usize| self.nodes(group).map(|x| (x[axis] - at).abs()).fold(f64::INFINITY, f64::min);
+            // Of the middles of edges: a group that ends at the corner of the facing one has a node there, too.
+            let edges = |group: usize| self.mesh.edges.iter().filter(move |edge| edge.group == group);
+            let middle = |edge: &BoundaryEdge| map::position(&self.mesh.map(edge.cell), map::on_face(edge.face, 0.5));
+            let off =
+                |group: usize| edges(group).map(|edge| (middle(edge)[axis] - at).abs()).fold(f64::INFINITY, f64::min);
             own.min_by(|&a, &b| off(a).total_cmp(&off(b)))
         };
         let [lower, upper] = [facing(below, gap[0])?, facing(1 - below, gap[1])?];
@@ -345,6 +349,26 @@ mod tests {
         assert_eq!((count, mesh.edge_groups.last().unwrap().as_str()), (2, "boundary"));
         let (again, count) = tagged(mesh.clone()).unwrap();
         assert_eq!((count, again), (0, mesh));
+    }
+
+    #[test]
+    fn bodies_meet_in_the_groups_that_face_each_other_in_any_order_of_the_groups() {
+        let mut mesh = rectangle([1.0, 3.0], [4, 3]).unwrap();
+        // Without the row in the middle: bodies below y = 1 and above y = 2.
+        for cell in (4..8).rev() {
+            mesh.cells.remove(cell);
+            mesh.cell_group.remove(cell);
+        }
+        mesh.original = vec![];
+        mesh.edge_groups = ["ends", "top", "bottom", "rim"].map(str::to_owned).to_vec();
+        let group = |cell: usize, face: usize| if cell >= 4 { 3 } else { [0, 0, 2, 1][face] };
+        let is_edge = |cell: usize, face: usize| face >= 2 || [0, 3][face] == cell % 4;
+        let all =
+            (0..8).flat_map(|cell| (0..4).map(move |face| (cell, face))).filter(|&(cell, face)| is_edge(cell, face));
+        mesh.edges = all.map(|(cell, face)| BoundaryEdge { cell, face, group: group(cell, face) }).collect();
+        let draft = draft(&mesh, "a.msh").unwrap();
+        let contact = draft.boundaries.iter().find(|condition| condition.kind == "contact").unwrap();
+        assert_eq!((&contact.group[..], &contact.keys[0]), ("top", &("partner", "\"rim\"".to_owned())));
     }
 
     #[test]

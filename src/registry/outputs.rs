@@ -98,13 +98,15 @@ const fn fields(default: Preset) -> Parameter {
 pub static OUTPUTS: Table<Output> = Table::new(&[
     Entry {
         name: "fields",
-        about: "snapshots, for `dgmpm export`",
+        about: "snapshots, for `dgmpm export`; at the end of the run, too, unless `at` lists the times",
         parameters: &[named(Preset::Absent("the kind")), fields(Preset::Absent("all"))],
         check: ANY,
         build: Output {
             has_fields: true,
             snapshots: true,
-            ..Output::of(|_, of| Ok(Box::new(Snapshots::new(&of.folder.snapshots(), of.schedule))))
+            ..Output::of(|_, of| {
+                Ok(Box::new(Snapshots::new(&of.folder.snapshots(), of.schedule.with_end_of_intervals())))
+            })
         },
     },
     Entry {

@@ -9,7 +9,7 @@ use std::process::Command;
 /// What is wrong, and what would be right.
 pub type Fault = (String, &'static str);
 
-const REMEDY: &str = "give a .geo file that Gmsh meshes with quadrilaterals and named groups";
+const REMEDY: &str = "give a .geo file that is there, and that Gmsh meshes with quadrilaterals and named groups";
 
 fn fault(what: impl ToString) -> Fault {
     (what.to_string(), REMEDY)
