@@ -42,7 +42,7 @@ pub struct BlockGraph {
     pub first: Vec<usize>,
     /// The block at the other end of each edge; each edge stands at both of its blocks.
     pub near: Vec<usize>,
-    /// Of how many faces of blocks the traces would be sent, if the blocks of an edge were of two ranks.
+    /// Of how many faces of cells the traces would be sent, if the blocks of an edge were of two ranks.
     pub faces: Vec<usize>,
     /// What each block costs in a step: an estimate, ns.
     pub weights: Vec<u64>,

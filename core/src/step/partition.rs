@@ -82,27 +82,25 @@ impl Operators {
     }
 }
 
-/// Each edge weighs as many faces of blocks as one of its blocks reads of the other one.
+/// Each edge weighs as many faces of cells as its blocks have in common, twice: both read the other's.
 fn block_graph(blocks: &Blocks, weights: Vec<u64>) -> BlockGraph {
-    let mut read = vec![BTreeMap::<usize, Vec<usize>>::new(); blocks.len()];
+    let mut read = vec![BTreeMap::<usize, usize>::new(); blocks.len()];
     for (block, neighbours) in blocks.neighbours.iter().enumerate() {
         for neighbour in neighbours.iter().flatten() {
             let (Neighbour::Cell(across) | Neighbour::Interface(across, _)) = neighbour else { continue };
             let other = across.face / FACES;
             if other != block {
-                // Both blocks have the edge, with the faces that either reads of the other: the same for both.
-                read[block].entry(other).or_default().push(across.face);
-                read[other].entry(block).or_default().push(across.face);
+                // Both blocks have the edge, with what either reads of the other.
+                *read[block].entry(other).or_default() += 1;
+                *read[other].entry(block).or_default() += 1;
             }
         }
     }
     let mut graph = BlockGraph { first: vec![0], near: vec![], faces: vec![], weights };
     for edges in read {
-        for (other, mut faces) in edges {
-            faces.sort_unstable();
-            faces.dedup();
+        for (other, faces) in edges {
             graph.near.push(other);
-            graph.faces.push(faces.len());
+            graph.faces.push(faces);
         }
         graph.first.push(graph.near.len());
     }
@@ -125,13 +123,13 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_of_the_graph_counts_the_faces_that_both_blocks_read() {
-        // Rows of eight cells, one a block: each reads the upper face of the one below and the lower face of the one above.
+    fn an_edge_of_the_graph_counts_the_faces_of_cells_that_both_blocks_read() {
+        // Rows of eight cells, one a block: each reads eight upper faces of the one below and eight lower ones of the one above.
         let mesh = rectangle([1.0, 1.0], [8, 3]).unwrap();
         let scheme = scheme(&mesh, Kind::RkDgfem, 1, &midpoints(&mesh, 1), wall);
         let graph = block_graph(&scheme.operators.blocks, vec![1; 3]);
         assert_eq!((&graph.first[..], &graph.near[..]), (&[0, 1, 3, 4][..], &[1, 0, 2, 1][..]));
-        assert_eq!(graph.faces, [2; 4]);
+        assert_eq!(graph.faces, [16; 4]);
     }
 
     #[test]

@@ -17,7 +17,7 @@ use crate::exchange::{Exchange, agree, numbers_of_all};
 use crate::lane::{F8, LANES};
 use crate::mesh::FACES;
 use crate::operators::Neighbour;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -47,6 +47,21 @@ struct Face {
     store: usize,
     slot: usize,
     face: usize,
+    /// The cells whose traces are read, a bit each.
+    lanes: u8,
+}
+
+/// All cells of a block.
+const ALL: u8 = u8::MAX;
+const _: () = assert!(LANES == u8::BITS as usize);
+
+/// The lanes of these bits.
+fn lanes(mut bits: u8) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bits.trailing_zeros() as usize;
+        bits &= bits.wrapping_sub(1);
+        (lane < LANES).then_some(lane)
+    })
 }
 
 impl Face {
@@ -54,6 +69,11 @@ impl Face {
     fn range(&self, numbers: usize) -> Range<usize> {
         let first = 1 + self.slot * numbers + self.face * (numbers / FACES);
         first..first + numbers / FACES
+    }
+
+    /// How many numbers of it are sent, with so many a block.
+    fn count(&self, numbers: usize) -> usize {
+        numbers / FACES * self.lanes.count_ones() as usize
     }
 }
 
@@ -82,35 +102,36 @@ impl Ranks {
         Some(Box::new(out))
     }
 
-    /// Faces (FACES block + face) of other ranks whose traces a rank reads.
-    fn needed_by(&self, rank: usize, scheme: &Scheme, graph: &[Vec<usize>]) -> BTreeSet<usize> {
+    /// Faces (FACES block + face) of other ranks whose traces a rank reads, with the lanes of these.
+    fn needed_by(&self, rank: usize, scheme: &Scheme, graph: &[Vec<usize>]) -> BTreeMap<usize, u8> {
         let own = self.blocks[rank]..self.blocks[rank + 1];
-        let mut needs = BTreeSet::new();
+        let mut needs = BTreeMap::<usize, u8>::new();
         for block in own.clone() {
             for neighbour in scheme.operators.blocks.neighbours[block].iter().flatten() {
                 if let Neighbour::Cell(across) | Neighbour::Interface(across, _) = neighbour {
-                    needs.insert(across.face);
+                    *needs.entry(across.face).or_default() |= 1 << across.lane;
                 }
             }
             if scheme.contacts.is_some() {
                 // Which of its faces meet changes from step to step.
-                needs.extend(graph[block].iter().flat_map(|near| FACES * near..FACES * (near + 1)));
+                let faces = graph[block].iter().flat_map(|near| FACES * near..FACES * (near + 1));
+                needs.extend(faces.map(|face| (face, ALL)));
             }
         }
-        needs.retain(|face| !own.contains(&(face / FACES)));
+        needs.retain(|face, _| !own.contains(&(face / FACES)));
         needs
     }
 
     /// Lists what is sent and received so that a rank has what it needs.
-    fn list(&mut self, rank: usize, needs: &BTreeSet<usize>, slots: &[Slot], tiles: usize, blocks: usize) {
+    fn list(&mut self, rank: usize, needs: &BTreeMap<usize, u8>, slots: &[Slot], tiles: usize, blocks: usize) {
         let own = self.exchange.rank();
-        for (stage, &needed) in (0..slots.len() / blocks.max(1)).flat_map(|stage| needs.iter().map(move |n| (stage, n)))
-        {
+        let stages = 0..slots.len() / blocks.max(1);
+        for (stage, (&needed, &lanes)) in stages.flat_map(|stage| needs.iter().map(move |need| (stage, need))) {
             let (block, face) = (needed / FACES, needed % FACES);
             let from = self.blocks.partition_point(|first| *first <= block) - 1;
             let slot = slots[stage * blocks + block];
             let Some(store) = (slot.store as usize).checked_sub(1) else { continue };
-            let face = Face { store, slot: slot.index as usize, face };
+            let face = Face { store, slot: slot.index as usize, face, lanes };
             if from == own {
                 self.send[store / tiles][rank].push(face);
             }
@@ -126,18 +147,24 @@ impl Ranks {
         for (letter, faces) in send.iter_mut().zip(&self.send[phase]) {
             letter.clear();
             for face in faces {
-                shown[face.store][face.range(numbers)].iter().for_each(|number| letter.extend_from_slice(&number.0));
+                for number in &shown[face.store][face.range(numbers)] {
+                    match face.lanes {
+                        ALL => letter.extend_from_slice(&number.0),
+                        some => letter.extend(lanes(some).map(|lane| number.0[lane])),
+                    }
+                }
             }
         }
         for (letter, faces) in receive.iter_mut().zip(&self.receive[phase]) {
-            letter.resize(faces.len() * (numbers / FACES) * LANES, 0.0);
+            letter.resize(faces.iter().map(|face| face.count(numbers)).sum(), 0.0);
         }
         self.exchange.swap(send, receive);
         for (letter, faces) in receive.iter().zip(&self.receive[phase]) {
-            let mut letter = letter.as_chunks().0.iter();
+            let mut letter = letter.iter();
             for face in faces {
-                let numbers = shown[face.store][face.range(numbers)].iter_mut();
-                numbers.zip(&mut letter).for_each(|(to, from)| to.0 = *from);
+                for number in &mut shown[face.store][face.range(numbers)] {
+                    lanes(face.lanes).zip(&mut letter).for_each(|(lane, from)| number.0[lane] = *from);
+                }
             }
         }
     }
