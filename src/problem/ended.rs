@@ -93,6 +93,9 @@ fn holds(made: &EnergyMade, scene: &Scene) -> String {
         made.between_nodes.then(|| "points on the Gauss nodes ([cloud] layout = \"gauss\")".to_owned()),
     ];
     let mut all: Vec<String> = all.into_iter().flatten().collect();
+    if let Ok(settings) = scene.settings() {
+        all.push(format!("a smaller step (scheme.safety = {:.2})", 0.5 * settings.courant / scene.step_limit()));
+    }
     all.push("a finer mesh".to_owned());
     all.join(" or ")
 }

@@ -51,6 +51,7 @@ mod resume;
 pub mod room;
 pub mod series;
 mod solve;
+mod source_notices;
 mod start;
 mod stopped;
 mod store;

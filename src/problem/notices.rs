@@ -1,7 +1,7 @@
 //! What is no error and yet seldom meant: parts that do not see each other, groups inside of the body, numbers that look like
 //! other units.
 
-use super::{Cost, Problem};
+use super::{Cost, Problem, source_notices};
 use crate::mesh::parts::{EdgeCount, Part, parts};
 use crate::mesh::{BoundaryEdge, Link, Mesh};
 use crate::operators::{Blocks, Certificate, Neighbour};
@@ -49,6 +49,7 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     all.extend(slow_cells(mesh, &cost.certificates));
     all.extend(short(scene, *dt));
     all.extend(other_springs(problem));
+    all.extend(source_notices::of_sources(problem, *dt));
     let notice = scene.curl.build().notice;
     all.extend((!notice.is_empty()).then(|| notice.to_owned()));
     if *steps <= 1.0 {

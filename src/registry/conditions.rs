@@ -251,7 +251,11 @@ pub static CONDITIONS: Table<Condition> = Table::new(&[
                 Preset::Absent("none"),
             ),
         ],
-        check: ANY,
+        check: |of| {
+            let acts = ["stiffness", "damping"].iter().any(|key| of.has(key) && of.vector(key) != [0.0; 2]);
+            let what = "the foundation has neither a spring nor a damper";
+            if acts { Ok(()) } else { Err(Fault::new("stiffness", what, "give one of them, or kind = \"free\"")) }
+        },
         build: Condition::of(|of| {
             let damping = if of.has("damping") { of.vector("damping") } else { [0.0; 2] };
             Arc::new(Foundation { stiffness: of.vector("stiffness"), damping })

@@ -6,6 +6,7 @@ use super::fields::{
 };
 use super::givers;
 use super::{ANY, Chosen, Entry, FINITE, Fault, Field, Form, Parameter, Preset, Table, Value, Values};
+use crate::error::Error;
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::observe::{Contents, Ledger, Line, Observer, Outside, Samples, Schedule, Snapshots};
@@ -210,6 +211,14 @@ pub static OUTPUTS: Table<Output> = Table::new(&[
             ..Output::track(|of, to| {
                 let all = if of.text("by") == "pair" { givers::pairs } else { givers::groups };
                 let givers = all(of.texts("groups"), to.mesh, to.scheme);
+                if givers.is_empty() {
+                    let what =
+                        "an [[output]] of kind \"force\" has nothing to record: no pair of these groups is in contact";
+                    return Err(Error::input(
+                        what,
+                        "give by = \"group\", groups that touch each other, or a [[boundary]] kind = \"contact\"",
+                    ));
+                }
                 to.track(Forces::new(givers))
             })
         },
@@ -309,6 +318,14 @@ fn places(of: &Values, to: &Recording) -> Places {
 /// `from` and `to`, or neither; `group` and `axis` belong to an extent.
 fn check_length(of: &Values) -> std::result::Result<(), Fault> {
     match (of.has("from"), of.has("to"), of.has("group")) {
+        (true, true, false) if of.has("axis") => {
+            let what = "a distance of two points has no axis";
+            Err(Fault::new(
+                "axis",
+                what,
+                "remove `axis`, or `from` and `to`; outputs of kind \"probe\" have x and y of each point",
+            ))
+        }
         (true, true, false) => fields::two_points(of),
         (false, false, _) => Ok(()),
         (true, true, true) => {

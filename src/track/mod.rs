@@ -83,8 +83,9 @@ impl Tracked {
     }
 }
 
-/// `name [unit]`.
+/// `name [unit]`; what separates the columns of a table cannot stand in a name, and may in that of a group.
 fn header(name: String, unit: &str) -> String {
+    let name = name.replace([',', '"', '\n', '\r'], "_");
     if unit.is_empty() { name } else { format!("{name} [{unit}]") }
 }
 

@@ -54,9 +54,14 @@ pub struct FacePoint {
 }
 
 impl FacePoint {
-    /// Z of the inside with its current normal and speeds: what comes out keeps its characteristic.
+    /// Z of the inside with its current normal and speeds: what comes out keeps its characteristic. With the initial normal for a law of the
+    /// small strain: with the current one a body of it that turned before an absorbing edge made energy.
     pub fn characteristic(&self, inside: &Trace<f64>) -> Impedance<f64> {
-        Impedance::new(inside.c, self.medium.density, current_normal(inside.f, inside.f, self.normal))
+        let normal = match self.medium.is_objective {
+            true => current_normal(inside.f, inside.f, self.normal),
+            false => self.normal,
+        };
+        Impedance::new(inside.c, self.medium.density, normal)
     }
 
     /// z_p = rho0 c_p with the current speed of the inside, kg/(m^2 s), for all directions: of what holds the body, as in the

@@ -55,6 +55,10 @@ impl Boundary for Obstacle {
 
     fn face_flux(&self, face: &WholeFace, when: &Moment, memory: &mut [f64], flux: &mut [[f64; 6]]) -> bool {
         let (moved, _) = memory.as_chunks::<2>();
+        let w = self.velocity_at(&face.points[0], when);
+        if !w.iter().all(|w| w.is_finite()) {
+            return false;
+        }
         let mut touches = vec![];
         self.shape.each_tip(|tip| touches.extend(face.touch(&tip, moved)));
         if touches.is_empty() {
@@ -71,7 +75,6 @@ impl Boundary for Obstacle {
                 touches.push(Touch { s, normal, values, force: [0.0; 2], depth: -gap });
             }
         }
-        let w = self.velocity_at(&face.points[0], when);
         let v = face.held(&mut touches, w, self.friction, flux);
         if touches[..tips].iter().all(|tip| tip.force[0] == 0.0) {
             return false;

@@ -53,6 +53,10 @@ impl Surface {
     /// The state of a body that touches the surface and may leave it, and whether the surface holds it: where the surface would
     /// have to pull, or where they do not touch, the boundary is free.
     pub fn unilateral(&self, inside: &Trace<f64>, at: &FacePoint, touches: bool) -> (Star, bool) {
+        if !self.speed.iter().all(|speed| speed.is_finite()) {
+            // An expression that is no number ends the run, as that of a wall that never lets go does.
+            return (Star { v: [f64::NAN; 2], t: [f64::NAN; 2] }, false);
+        }
         let along = self.traction(inside, at);
         // Not `along > 0`: a traction that is not a number is no contact.
         if touches && along <= 0.0 {

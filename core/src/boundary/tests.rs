@@ -6,7 +6,7 @@ use crate::tensor;
 use std::sync::Arc;
 
 const N: [f64; 2] = [0.6, 0.8];
-const MEDIUM: Medium<f64> = Medium { density: 1.3, shear_admittance: 1.0, share: 1.0, turn: 0.0 };
+const MEDIUM: Medium<f64> = Medium { density: 1.3, shear_admittance: 1.0, share: 1.0, turn: 0.0, is_objective: true };
 const AT: FacePoint = FacePoint { x: [0.3, 0.4], normal: N, medium: MEDIUM };
 const NOW: Moment = Moment { times: &[TimeNode { time: 0.0, weight: 1.0 }], dt: 0.0 };
 

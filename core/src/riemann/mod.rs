@@ -41,6 +41,9 @@ pub struct Medium<L> {
     /// How fast the face turns: the length of the face times the rate at which v changes along it, m/s. 0 where a flux does not
     /// ask for it ([`Looks::Displacement`]).
     pub turn: L,
+    /// Whether waves go along the axes of the body as it is: those of a law of the small strain go along those of the initial
+    /// configuration, however the body turns.
+    pub is_objective: bool,
 }
 
 /// theta by degree, measured. The one-step scheme at .9 of its step limit grows below .72, .45, .35 (N = 1, 2, 3). Less of it
@@ -53,7 +56,14 @@ impl Medium<f64> {
     /// That of a law with this rho0 (kg/m^3) and mu (Pa) in a scheme of degree N.
     pub fn new(density: f64, shear_modulus: f64, degree: usize) -> Self {
         let share = SHARE[degree.min(SHARE.len() - 1)];
-        Self { density, shear_admittance: 1.0 / (density * shear_modulus).sqrt(), share, turn: 0.0 }
+        let shear_admittance = 1.0 / (density * shear_modulus).sqrt();
+        Self { density, shear_admittance, share, turn: 0.0, is_objective: true }
+    }
+
+    /// That of a law which sees how the body turns, or not.
+    #[must_use]
+    pub fn objective(self, is_objective: bool) -> Self {
+        Self { is_objective, ..self }
     }
 
     /// In all lanes.
@@ -64,6 +74,7 @@ impl Medium<f64> {
             shear_admittance: L::splat(self.shear_admittance),
             share: L::splat(self.share),
             turn: L::splat(self.turn),
+            is_objective: self.is_objective,
         }
     }
 }

@@ -46,7 +46,8 @@ impl<'a> Block<'a> {
     /// What its cells are made of.
     #[inline]
     pub fn medium(&self) -> Medium<f64> {
-        Medium::new(self.law().density(), self.law().shear_modulus(), self.scheme.operators.degree)
+        let law = self.law();
+        Medium::new(law.density(), law.shear_modulus(), self.scheme.operators.degree).objective(law.is_objective())
     }
 
     /// What [`Medium::turn`] is of the change of v, summed over both sides, from the first to the last point of a face.
