@@ -119,7 +119,8 @@ impl Watch {
         self.scale = self.scale.max(self.work[0] + self.work[1]);
         let limits = self.limits?;
         self.steps += 1;
-        if !self.steps.is_multiple_of(EVERY) {
+        // An impact that begins may make energy in the first step of all.
+        if self.steps > 1 && !self.steps.is_multiple_of(EVERY) {
             return None;
         }
         let energy = match balance {

@@ -277,6 +277,9 @@ impl<'a> BlockMetric<'a> {
     }
 }
 
+/// From what length over h on the face of a cell is long. h of a rectangle a x b is 2/(1/a + 1/b).
+const LONG: f64 = 2.5;
+
 /// Metric terms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
@@ -339,6 +342,15 @@ impl Geometry {
     /// h_e of all cells, m, by block.
     pub fn h(&self) -> impl Iterator<Item = &F8> {
         self.blocks.iter().map(|metric| &metric.h)
+    }
+
+    /// Whether a face of a cell is longer than [`LONG`] h, as in rectangles of more than 1 : 4.
+    pub fn has_long_cells(&self) -> bool {
+        let is_long = |metric: &Metric<F8>, lane: usize| {
+            let metric = metric.lane(lane);
+            (0..FACES).any(|face| metric.length(face) > LONG * metric.h)
+        };
+        self.blocks.iter().any(|metric| (0..LANES).any(|lane| is_long(metric, lane)))
     }
 
     /// The diagonal mass matrix w_a J_a of the cell in a lane of a block, m^2: by node of `line`. On straight cells it is exact.

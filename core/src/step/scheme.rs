@@ -73,6 +73,8 @@ pub struct Scheme {
     pub(super) bodies: Option<super::angular_momentum::Bodies>,
     /// The ranks that step the body together; none where it runs alone.
     pub(super) exchange: Option<Arc<dyn Exchange>>,
+    /// Whether the mesh has cells that are much longer than wide.
+    pub(super) long_cells: bool,
     /// Which blocks each rank has; none where ranks have runs of equal weight.
     pub(super) partition: Option<Partition>,
     /// The instruction set.
@@ -125,6 +127,7 @@ impl Scheme {
         }
         let (histories, boundary_memory) =
             (Histories::new(&operators, &laws), BoundaryMemory::new(&operators, &boundaries));
+        let long_cells = operators.geometry.has_long_cells();
         let sees_faces = boundaries.iter().any(|boundary| boundary.sees_faces());
         let moduli = super::springs::moduli(&laws, &flux);
         let (sources, corrections, curl, kernel) = (vec![], vec![], None, Kernel::widest());
@@ -147,6 +150,7 @@ impl Scheme {
             bodies: None,
             exchange: None,
             partition: None,
+            long_cells,
             kernel,
             scene: String::new(),
         })
@@ -253,6 +257,12 @@ impl Scheme {
     #[must_use]
     pub fn with_kernel(self, kernel: Kernel) -> Self {
         Self { kernel, ..self }
+    }
+
+    /// The largest dt c / h of the first steps of a run, see [`super::cfl::gentle`]; none where all steps are alike.
+    pub fn gentle_start(&self) -> Option<f64> {
+        let is_ader = matches!(self.method, Method::Ader { .. });
+        (is_ader && self.long_cells).then(|| super::cfl::gentle(self.operators.degree))
     }
 
     /// Number of stages of a step (1 for ADER).
