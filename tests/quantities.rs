@@ -1,9 +1,11 @@
 //! Quantities of interest: their values against what is known of a motion, what they cost a run, and what is refused.
 
+mod runs;
 mod scenes;
 
 use assert_cmd::Command;
 use dgmpm::Folder;
+use runs::Table;
 use scenes::Body;
 use serde_json::Value;
 use std::path::Path;
@@ -73,6 +75,37 @@ fn the_mean_force_of_the_wall_changes_the_momentum_of_the_body() {
     assert!((force * 1e-4 / change - 1.0).abs() < 0.02, "{force:e} N/m, {change:e} kg/s");
     // A free side has no traction, to the last bit.
     assert_eq!(found["quantities"]["above"].as_f64().unwrap(), 0.0);
+}
+
+/// The force of a state's own traces was 0 at contact, and of the wrong size and sign on bodies of J2.
+#[test]
+fn a_force_is_that_of_the_output_at_contact_and_on_plastic_bodies() {
+    let pair =
+        Body::square(4).side("left", "wall", "").velocity(["-300", "0"]).method("ader-dgmpm").degree(2).end(1e-4);
+    let plastic = pair.clone().material("j2", [2e11, 0.3, 7800.0], "yield_stress = 4e8\nhardening = 1e10");
+    for (name, body) in [("elastic", pair), ("plastic", plastic)] {
+        let of = |name: &str, lines: &str| format!("name = \"{name}\"\nkind = \"force\"\ngroup = \"left\"\n{lines}");
+        let ways = [
+            ("end", ""),
+            ("at", "time = 4e-5"),
+            ("most", "over = \"run\""),
+            ("size", "over = \"run\"\nstatistic = \"abs\""),
+        ];
+        let body = ways.iter().fold(body, |body, (name, lines)| body.table("[quantity]", &of(name, lines)));
+        let body = body.table("[output]", "kind = \"force\"\nname = \"walls\"\ngroups = [\"left\"]");
+        let folder = tempfile::tempdir().unwrap();
+        let found = summary(&body, folder.path())["quantities"].clone();
+        let table = Table::read(&folder.path().join("tracks/walls.csv"));
+        let (t, force) = (table.column("t [s]"), table.column("left_force_1 [N/m]"));
+        let step = (1..t.len()).find(|&k| t[k] >= 4e-5).unwrap();
+        let most = force[1..].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let size = force[1..].iter().fold(0.0_f64, |size, force| size.max(force.abs()));
+        for (key, expected) in [("end", force[t.len() - 1]), ("at", force[step]), ("most", most), ("size", size)] {
+            // The same differences of the same sums.
+            assert_eq!(found[key].as_f64().unwrap(), expected, "{name} {key}");
+        }
+        assert!(most > 1e8, "{name}: {most:e}");
+    }
 }
 
 #[test]

@@ -31,7 +31,7 @@ impl Problem {
     pub fn cost(&self) -> Result<Cost, Loss> {
         let Self { scheme, state, settings, .. } = self;
         let mut motion = Motion::of_copy(scheme, state)?;
-        let dt = settings.courant * self.body.mesh.smallest_h() / motion.survey.fastest;
+        let dt = settings.stable_step(&self.scheme, self.body.mesh.smallest_h(), motion.survey.fastest);
         let steps = ((settings.end - state.time) / dt).ceil();
         let mut trial = || {
             let clock = Instant::now();

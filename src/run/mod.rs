@@ -28,7 +28,6 @@ use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::observe::{Observer, View};
 use crate::state::State;
-use crate::step::cfl::GENTLE_STEPS;
 use crate::step::{Balance, EnergyMade, Motion, Scheme, Survey};
 use crate::words::{Saved, Words};
 use cpu_time::ProcessTime;
@@ -229,9 +228,7 @@ impl Run<'_, '_> {
             let time = motion.state.time;
             let stops = self.keep_if_due((pause, keep.as_deref_mut()), motion, report)?;
             let stop = pause.stop(time).unwrap_or(f64::INFINITY).min(self.next_stop(time));
-            let stable = self.settings.stable_step(h, motion.survey.fastest);
-            let gentle = self.scheme.gentle_start().filter(|_| motion.state.step < GENTLE_STEPS);
-            let stable = gentle.map_or(stable, |most| stable.min(most * h / motion.survey.fastest));
+            let stable = self.settings.stable_step(self.scheme, h, motion.survey.fastest);
             let dt = step_size(stop - time, stable);
             let next = end_of_step(time, dt, stop);
             check_advance([time, next, self.settings.end], [stable, dt], h)?;

@@ -2,6 +2,7 @@
 
 use super::Settings;
 use crate::error::Error;
+use crate::step::Scheme;
 
 /// The time after a step: one that is meant to end at the end of the run or at an exact time ends there to the last bit.
 pub(super) fn end_of_step(time: f64, dt: f64, stop: f64) -> f64 {
@@ -13,9 +14,11 @@ pub(super) fn end_of_step(time: f64, dt: f64, stop: f64) -> f64 {
 const ENDLESS: f64 = 1e13;
 
 impl Settings {
-    /// The largest step for cells of size `h`, m, and waves of speed `fastest`, m/s.
-    pub(super) fn stable_step(&self, h: f64, fastest: f64) -> f64 {
-        let of_waves = self.courant * h / fastest;
+    /// The largest step for cells of size `h`, m, and waves of speed `fastest`, m/s; long cells may ask for a shorter one
+    /// ([`Scheme::gentle_length`]).
+    pub(crate) fn stable_step(&self, scheme: &Scheme, h: f64, fastest: f64) -> f64 {
+        let of_cells = self.courant * h;
+        let of_waves = scheme.gentle_length().map_or(of_cells, |length| of_cells.min(length)) / fastest;
         // Without damping to the last bit what it is without this line.
         if self.decay == 0.0 { of_waves } else { 1.0 / (1.0 / of_waves + self.decay) }
     }
