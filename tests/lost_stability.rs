@@ -101,13 +101,13 @@ const NOT_NUMBERS: [(&str, &str, &str); 7] = [
     // A wall and an obstacle that let go: a point that is not held for want of a number would be free.
     (
         "boundary.1={group=\"right\",kind=\"unilateral\",gap=1e-3,speed=\"(2e-5-t)^0.5\"}",
-        "boundary.1.speed",
-        "the speed of the boundary `right`, `(2e-5-t)^0.5` is NaN at X = (1.",
+        "boundary.1=",
+        "the speed of the wall `right` `(2e-5-t)^0.5` is NaN at X = (1.",
     ),
     (
         "boundary.1={group=\"right\",kind=\"half-plane\",point=[1.001,0],normal=[-1,0],velocity=[\"1/step(2e-5-t)\",\"0\"]}",
-        "boundary.1.velocity.0",
-        "component 1 of the velocity of the boundary `right`, `1/step(2e-5-t)` is inf at X = (1.",
+        "boundary.1=",
+        "component 1 of its velocity `right`, `1/step(2e-5-t)` is inf at X = (1.",
     ),
     // Only where x > .9 of the top.
     (

@@ -89,11 +89,13 @@ impl Scene {
 fn all<'a, B>(chosen: &'a Chosen<B>, table: &str, of: &str) -> Vec<Named<'a>> {
     let mut named = Vec::new();
     for (parameter, expressions) in chosen.expressions() {
+        // What the line says of its use is no part of the name.
+        let about = parameter.about.split(',').next().unwrap_or(parameter.about);
         for (k, expression) in expressions.iter().enumerate() {
             let (key, name) = match expressions.len() {
-                1 => (format!("{table}.{}", parameter.name), format!("{}{of}", parameter.about)),
+                1 => (format!("{table}.{}", parameter.name), format!("{about}{of}")),
                 _ => {
-                    let name = format!("component {} of {}{of},", k + 1, parameter.about);
+                    let name = format!("component {} of {about}{of},", k + 1);
                     (format!("{table}.{}.{k}", parameter.name), name)
                 }
             };

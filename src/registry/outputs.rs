@@ -318,14 +318,6 @@ fn places(of: &Values, to: &Recording) -> Places {
 /// `from` and `to`, or neither; `group` and `axis` belong to an extent.
 fn check_length(of: &Values) -> std::result::Result<(), Fault> {
     match (of.has("from"), of.has("to"), of.has("group")) {
-        (true, true, false) if of.has("axis") => {
-            let what = "a distance of two points has no axis";
-            Err(Fault::new(
-                "axis",
-                what,
-                "remove `axis`, or `from` and `to`; outputs of kind \"probe\" have x and y of each point",
-            ))
-        }
         (true, true, false) => fields::two_points(of),
         (false, false, _) => Ok(()),
         (true, true, true) => {
