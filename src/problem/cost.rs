@@ -30,8 +30,8 @@ impl Problem {
     /// A state that is not healthy at a point or a face.
     pub fn cost(&self) -> Result<Cost, Loss> {
         let Self { scheme, state, settings, .. } = self;
-        let mut motion = Motion::of_copy(scheme, state)?;
-        let dt = settings.stable_step(&self.scheme, self.body.mesh.smallest_h(), motion.survey.fastest);
+        let (mut motion, mesh) = (Motion::of_copy(scheme, state)?, &self.body.mesh);
+        let dt = settings.stable_step(scheme, [mesh.smallest_h(), mesh.smallest_height()], motion.survey.fastest);
         let steps = ((settings.end - state.time) / dt).ceil();
         let mut trial = || {
             let clock = Instant::now();

@@ -47,6 +47,7 @@ pub fn of_run(problem: &Problem, cost: &Cost) -> Vec<String> {
     all.extend(fast_boundary(scene, mesh, scheme));
     all.extend(thin(mesh, blocks, scene.scheme.degree));
     all.extend(slow_cells(mesh, &cost.certificates));
+    all.extend(flat_cells(problem, *dt, survey));
     all.extend(short(scene, *dt));
     all.extend(other_springs(problem));
     all.extend(source_notices::of_sources(problem, *dt));
@@ -223,6 +224,17 @@ fn slow_cells(mesh: &Mesh, certificates: &[Certificate]) -> Option<String> {
              takes {:.0} times the steps that those need; such cells are small, flat, or have two edges in one smooth side of the body",
             mesh.number(cell),
             median / least
+        )
+    })
+}
+
+/// A word on flat cells that make the step of ADER smaller than its cfl number says.
+fn flat_cells(problem: &Problem, dt: f64, survey: &Survey) -> Option<String> {
+    let usual = problem.settings.courant * problem.body.mesh.smallest_h() / survey.fastest;
+    (problem.settings.decay == 0.0 && dt < (1.0 - 1e-9) * usual).then(|| {
+        format!(
+            "flat cells make the step {dt:.3e} s in place of {usual:.3e} s: with the longer one a jump of the velocity at a wall, or in contact, would \
+             make energy"
         )
     })
 }

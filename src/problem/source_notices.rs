@@ -34,8 +34,15 @@ fn cells<'a>(source: &'a Source, body: &'a Body) -> impl Iterator<Item = usize> 
 
 fn is_dry(source: &Source, body: &Body, scheme: &Scheme) -> bool {
     let [region] = source.source.values.expressions("region") else { return false };
+    // One that changes may act later; one that is no number ends the run with its own message.
+    if region.depends_on_time() {
+        return false;
+    }
     let nodes = scheme.operators.line.nodes();
-    let is_wet = |cell: usize| nodes.iter().any(|xi| region.eval(map::position(&body.mesh.map(cell), *xi), 0.0) > 0.0);
+    let is_wet = |cell: usize| {
+        let at = |xi: &[f64; 2]| region.eval(map::position(&body.mesh.map(cell), *xi), 0.0);
+        nodes.iter().map(at).any(|share| share.is_nan() || share > 0.0)
+    };
     !cells(source, body).any(is_wet)
 }
 

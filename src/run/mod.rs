@@ -223,12 +223,12 @@ impl Run<'_, '_> {
         report.start(self.scheme, motion, &self.settings);
         motion.keep_own(self.scheme, pause.looks());
         let mut kept = Kept::new(&motion.state, &motion.survey);
-        let h = self.mesh.smallest_h();
+        let (h, height) = (self.mesh.smallest_h(), self.mesh.smallest_height());
         while motion.state.time < self.settings.end {
             let time = motion.state.time;
             let stops = self.keep_if_due((pause, keep.as_deref_mut()), motion, report)?;
             let stop = pause.stop(time).unwrap_or(f64::INFINITY).min(self.next_stop(time));
-            let stable = self.settings.stable_step(self.scheme, h, motion.survey.fastest);
+            let stable = self.settings.stable_step(self.scheme, [h, height], motion.survey.fastest);
             let dt = step_size(stop - time, stable);
             let next = end_of_step(time, dt, stop);
             check_advance([time, next, self.settings.end], [stable, dt], h)?;

@@ -14,11 +14,11 @@ pub(super) fn end_of_step(time: f64, dt: f64, stop: f64) -> f64 {
 const ENDLESS: f64 = 1e13;
 
 impl Settings {
-    /// The largest step for cells of size `h`, m, and waves of speed `fastest`, m/s; long cells may ask for a shorter one
-    /// ([`Scheme::gentle_length`]).
-    pub(crate) fn stable_step(&self, scheme: &Scheme, h: f64, fastest: f64) -> f64 {
+    /// The largest step for cells of the least size `h` and the least `height`, m, and waves of speed `fastest`, m/s. The height counts on cells
+    /// that are much longer than wide ([`Scheme::limit_at_walls`]).
+    pub(crate) fn stable_step(&self, scheme: &Scheme, [h, height]: [f64; 2], fastest: f64) -> f64 {
         let of_cells = self.courant * h;
-        let of_waves = scheme.gentle_length().map_or(of_cells, |length| of_cells.min(length)) / fastest;
+        let of_waves = scheme.limit_at_walls().map_or(of_cells, |limit| of_cells.min(limit * height)) / fastest;
         // Without damping to the last bit what it is without this line.
         if self.decay == 0.0 { of_waves } else { 1.0 / (1.0 / of_waves + self.decay) }
     }

@@ -20,9 +20,10 @@ impl Scene {
         let output = &self.outputs[i];
         let (key, what) = match &output.when {
             When::At(times) => ("at", self.times_after_the_end(times, "its last state stands for them")?),
-            When::Every(interval) if *interval > self.end - self.start => {
-                ("every", format!("longer than the run, {:e} s: only its start is recorded", self.end))
-            }
+            When::Every(interval) if *interval > self.end - self.start => (
+                "every",
+                format!("longer than the run, {:e} s: it has the start and the end of the run alone", self.end),
+            ),
             _ => return None,
         };
         Some(format!("{}`{key}` of output \"{}\": {what}", self.place(&format!("output.{i}.{key}")), output.name))

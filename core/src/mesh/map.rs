@@ -226,21 +226,29 @@ fn newton(cell: &impl Map, x: [f64; 2]) -> Option<[f64; 2]> {
     None
 }
 
-/// The length h_e of a cell: min over its 4 corners of 2 det(dX/dxi) / (|X_xi1| + |X_xi2|), in m; of a curved cell over 3 x 3
-/// points, with the middles of its edges and its own.
-///
-/// It is h on squares and 2 hx hy / (hx + hy) on rectangles; the time step, `cfl` and the curl control use it.
-pub fn h_e(cell: &impl Map) -> f64 {
-    let at = |xi| {
-        let j = jacobian(cell, xi);
-        2.0 * determinant(&j) / (j[0][0].hypot(j[1][0]) + j[0][1].hypot(j[1][1]))
-    };
+/// The height of a cell, m: min over its 4 corners (of a curved cell over 3 x 3 points) of det(dX/dxi) / max(|X_xi1|, |X_xi2|). It is the shorter side of a
+/// rectangle.
+pub fn height(cell: &impl Map) -> f64 {
+    least(cell, |j| determinant(j) / j[0][0].hypot(j[1][0]).max(j[0][1].hypot(j[1][1])))
+}
+
+/// The least of a number of dX/dxi at the corners of a cell, and at the middles of a curved one.
+fn least(cell: &impl Map, of: impl Fn(&[[f64; 2]; 2]) -> f64) -> f64 {
+    let at = |xi| of(&jacobian(cell, xi));
     let corners = CORNER_XI.into_iter().map(at).fold(f64::INFINITY, f64::min);
     let middles = [[0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5], [0.5, 0.5]];
     match cell.bulge() {
         None => corners,
         Some(_) => middles.into_iter().map(at).fold(corners, f64::min),
     }
+}
+
+/// The length h_e of a cell: min over its 4 corners of 2 det(dX/dxi) / (|X_xi1| + |X_xi2|), in m; of a curved cell over 3 x 3
+/// points, with the middles of its edges and its own.
+///
+/// It is h on squares and 2 hx hy / (hx + hy) on rectangles; the time step, `cfl` and the curl control use it.
+pub fn h_e(cell: &impl Map) -> f64 {
+    least(cell, |j| 2.0 * determinant(j) / (j[0][0].hypot(j[1][0]) + j[0][1].hypot(j[1][1])))
 }
 
 /// The area of a cell, in m^2; negative where its corners run clockwise. Between a chord and its curved edge lie 2/3 of chord x bulge.

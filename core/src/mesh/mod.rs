@@ -73,6 +73,11 @@ impl Mesh {
         (0..self.cells.len()).map(|cell| map::h_e(&self.map(cell))).fold(f64::INFINITY, f64::min)
     }
 
+    /// The smallest height of a cell ([`map::height`]), m.
+    pub fn smallest_height(&self) -> f64 {
+        (0..self.cells.len()).map(|cell| map::height(&self.map(cell))).fold(f64::INFINITY, f64::min)
+    }
+
     /// The lower left and the upper right corner of the box around its nodes and the middles of its edges, m.
     pub fn extent(&self) -> [[f64; 2]; 2] {
         let start = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];

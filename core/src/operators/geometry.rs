@@ -344,11 +344,10 @@ impl Geometry {
         self.blocks.iter().map(|metric| &metric.h)
     }
 
-    /// The smallest h of the cells of which a face is longer than [`LONG`] h, m, as in rectangles of more than 1 : 4; none without such cells.
-    pub fn smallest_long_cell(&self) -> Option<f64> {
-        let lanes = self.blocks.iter().flat_map(|metric| (0..LANES).map(|lane| metric.lane(lane)));
-        let long = lanes.filter(|metric| (0..FACES).any(|face| metric.length(face) > LONG * metric.h));
-        long.map(|metric| metric.h).reduce(f64::min)
+    /// Whether a face of a cell is longer than [`LONG`] h, as in rectangles of more than 1 : 4.
+    pub fn has_long_cells(&self) -> bool {
+        let mut lanes = self.blocks.iter().flat_map(|metric| (0..LANES).map(|lane| metric.lane(lane)));
+        lanes.any(|metric| (0..FACES).any(|face| metric.length(face) > LONG * metric.h))
     }
 
     /// The diagonal mass matrix w_a J_a of the cell in a lane of a block, m^2: by node of `line`. On straight cells it is exact.

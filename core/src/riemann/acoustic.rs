@@ -19,7 +19,8 @@ impl Riemann for Acoustic {
     fn flux<L: Lane>(&self, minus: &Trace<L>, plus: &Trace<L>, n: [L; 2], medium: &Medium<L>) -> [L; 6] {
         let half = L::splat(0.5);
         let c = [minus.c[0].max(plus.c[0]), minus.c[1].max(plus.c[1])];
-        let z = Impedance::new(c, medium.density, current_normal(minus.f, plus.f, n));
+        let normal = if medium.is_objective { current_normal(minus.f, plus.f, n) } else { n };
+        let z = Impedance::new(c, medium.density, normal);
         let dv = z.solve([plus.t[0] - minus.t[0], plus.t[1] - minus.t[1]]);
         let dt = z.times([plus.v[0] - minus.v[0], plus.v[1] - minus.v[1]]);
         let v = [half * (minus.v[0] + plus.v[0] + dv[0]), half * (minus.v[1] + plus.v[1] + dv[1])];

@@ -49,7 +49,7 @@ impl<'a> Block<'a> {
         let law = self.law();
         Medium::new(law.density(), law.shear_modulus(), self.scheme.operators.degree)
             .objective(law.is_objective())
-            .in_long_cells(self.scheme.long_cell.is_some())
+            .in_long_cells(self.scheme.long_cells)
     }
 
     /// What [`Medium::turn`] is of the change of v, summed over both sides, from the first to the last point of a face.

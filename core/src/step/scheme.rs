@@ -73,8 +73,8 @@ pub struct Scheme {
     pub(super) bodies: Option<super::angular_momentum::Bodies>,
     /// The ranks that step the body together; none where it runs alone.
     pub(super) exchange: Option<Arc<dyn Exchange>>,
-    /// h of the smallest cell that is much longer than wide, m; none where there is no such cell.
-    pub(super) long_cell: Option<f64>,
+    /// Whether the mesh has cells that are much longer than wide.
+    pub(super) long_cells: bool,
     /// Which blocks each rank has; none where ranks have runs of equal weight.
     pub(super) partition: Option<Partition>,
     /// The instruction set.
@@ -127,7 +127,7 @@ impl Scheme {
         }
         let (histories, boundary_memory) =
             (Histories::new(&operators, &laws), BoundaryMemory::new(&operators, &boundaries));
-        let long_cell = operators.geometry.smallest_long_cell();
+        let long_cells = operators.geometry.has_long_cells();
         let sees_faces = boundaries.iter().any(|boundary| boundary.sees_faces());
         let moduli = super::springs::moduli(&laws, &flux);
         let (sources, corrections, curl, kernel) = (vec![], vec![], None, Kernel::widest());
@@ -150,7 +150,7 @@ impl Scheme {
             bodies: None,
             exchange: None,
             partition: None,
-            long_cell,
+            long_cells,
             kernel,
             scene: String::new(),
         })
@@ -259,11 +259,10 @@ impl Scheme {
         Self { kernel, ..self }
     }
 
-    /// The largest dt c, m, with which long cells make no energy at a wall, see [`super::cfl::gentle`]; none without such cells, and for
+    /// The largest dt c over the smallest height of a cell with which a step makes no energy at a wall, see [`super::cfl::at_walls`]; none for
     /// Runge-Kutta.
-    pub fn gentle_length(&self) -> Option<f64> {
-        let h = self.long_cell.filter(|_| matches!(self.method, Method::Ader { .. }))?;
-        Some(super::cfl::gentle(self.operators.degree) * h)
+    pub fn limit_at_walls(&self) -> Option<f64> {
+        matches!(self.method, Method::Ader { .. }).then(|| super::cfl::at_walls(self.operators.degree))
     }
 
     /// Number of stages of a step (1 for ADER).

@@ -47,6 +47,10 @@ impl SingleFace<'_> {
             Neighbour::Interface(_, material) => {
                 let beyond = &scheme.laws[material];
                 let plus = trace(&|k| sides.other.number(point, k, own.len(), lane), -1.0, beyond);
+                // Between two laws of the small strain no direction turns.
+                let turns = law.is_objective() || beyond.is_objective();
+                let [minus, plus] =
+                    [minus, plus].map(|side| if turns { side } else { Trace { f: [1.0, 0.0, 0.0, 1.0], ..side } });
                 let mut flux = interface(&minus, &plus, at.normal, [law.density(), beyond.density()]);
                 if let Some(springs) = springs {
                     block.pull_between([self.face, point, lane], material, [&minus, &plus], springs, &mut flux);
