@@ -4,7 +4,7 @@
 # make hard-cases   shocks, corners, long runs and other hard cases: docs/hard_cases.md and its pictures
 # make validation   cases with exact or independent values: docs/validation.md and its pictures (three minutes)
 # make effects  what each effect costs the standard scene: docs/effects.md
-# make proof    that effects which a scene does not ask for cost nothing (ten minutes)
+# make proof    that effects which a scene does not ask for cost nothing (half an hour)
 # make faults   kills, full disks, corrupted bytes: the table of docs/reliability.md (some minutes)
 # make paraview   all kinds of exported files in the real ParaView: docs/img/paraview.png
 # make bench    the speed of the step on this machine: tables and roofline of docs/performance.md
@@ -17,7 +17,7 @@ help:
 	@echo "make hard-cases   run all hard cases (twenty minutes) and write docs/hard_cases.md and docs/hard/, again"
 	@echo "make validation   run the cases with exact or independent values (three minutes) and write docs/validation.md, again"
 	@echo "make effects  measure what each effect costs (some minutes): src/effects/measured.csv, docs/effects.md"
-	@echo "make proof   show that what a scene does not ask for costs nothing (ten minutes)"
+	@echo "make proof   show that what a scene does not ask for costs nothing (half an hour)"
 	@echo "make faults  kill runs, fill disks, corrupt files (some minutes) and write docs/reliability.md again"
 	@echo "make paraview   open all kinds of exported files in the real ParaView (installs it), and draw docs/img/paraview.png"
 	@echo "make bench   measure the speed (ten minutes): runs/bench/, docs/performance.md, docs/img/roofline.svg"
