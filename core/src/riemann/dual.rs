@@ -72,7 +72,8 @@ impl Dual {
     #[inline(always)]
     fn sum<L: Lane>(minus: &Trace<L>, plus: &Trace<L>, medium: &Medium<L>) -> [L; 4] {
         if !medium.is_objective {
-            return [2.0, 0.0, 0.0, 2.0].map(L::splat);
+            let (two, none) = (L::splat(2.0), L::zero());
+            return [two, none, none, two];
         }
         let (m, p) = (minus.f, plus.f);
         [m[0] + p[0], m[1] + p[1], m[2] + p[2], m[3] + p[3]]
