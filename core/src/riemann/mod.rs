@@ -52,8 +52,9 @@ pub struct Medium<L> {
 /// .75, .5), even ones do not; a J2 bar at N = 4 makes energy with .5.
 const SHARE: [f64; 7] = [1.0, 1.0, 0.7, 1.0, 0.75, 1.0, 0.75];
 
-/// theta at least where a mesh has long cells ([`crate::operators::Geometry::has_long_cells`]). With .7 (N = 2) the step grew by 3e-4 to 8e-3 on
-/// cells of 1 : 50 (nu = 0 to .49), and a strip of 1 x 12 such cells made 11 % of its energy; with .72 it still did at nu <= .3.
+/// theta at least where a mesh has long cells ([`crate::operators::Geometry::has_long_cells`]). With .7 (N = 2) the step grew on
+/// cells of 1 : 50 and more (radius - 1 of 3e-4 at 1 : 50, up to 9.7e-3 at 1 : 600), and a strip of such cells made 11 % of its energy; with .72 it
+/// still grew (up to 5.2e-3, at nu = 0 to .49).
 const LONG: f64 = 0.75;
 
 impl Medium<f64> {
