@@ -46,10 +46,7 @@ impl<'a> Block<'a> {
     /// What its cells are made of.
     #[inline]
     pub fn medium(&self) -> Medium<f64> {
-        let law = self.law();
-        Medium::new(law.density(), law.shear_modulus(), self.scheme.operators.degree)
-            .objective(law.is_objective())
-            .in_long_cells(self.scheme.long_cells)
+        self.scheme.media[self.material()]
     }
 
     /// What [`Medium::turn`] is of the change of v, summed over both sides, from the first to the last point of a face.

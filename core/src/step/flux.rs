@@ -23,7 +23,8 @@ use crate::riemann::{Looks, Medium, Riemann};
 use crate::state::UNKNOWNS;
 use crate::tensor::DEFORMATION;
 
-/// The four faces of a block with straight cells and without springs, all lanes as faces between cells of one law.
+/// The four faces of a block with straight cells and without springs, of a law that sees how the body turns; all lanes as faces between
+/// cells of one law.
 pub(super) struct Faces<'a> {
     metered: bool,
     /// Own traces, [face][point][width].
@@ -74,7 +75,8 @@ impl Faces<'_> {
     #[inline(always)]
     fn of_face<L: Lanes, O: Other, R: Riemann, const W: usize>(&mut self, face: usize, other: O, riemann: &R) {
         let m = self.points;
-        let mut medium = self.medium.splat::<L>();
+        // Known here: asked at each point it is 1 % of all instructions.
+        let mut medium = self.medium.objective(true).splat::<L>();
         let own = &self.own.as_chunks::<W>().0[face * m..(face + 1) * m];
         if R::LOOKS == Looks::Displacement {
             medium.turn = turn::<L, O, W>(own, &other, self.turning);
@@ -136,7 +138,7 @@ impl Block<'_> {
             lift: &mut nodes.lift,
             held: &mut nodes.held,
         };
-        if springs.is_some() || metric.curved.is_some() {
+        if springs.is_some() || metric.curved.is_some() || !medium.is_objective {
             let springs = springs.as_mut().map(Springs::again);
             flux.special_faces(scheme.kernel, SpecialFaces { faces, metric, springs });
         } else {

@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 use crate::exchange::Exchange;
 use crate::lane::Kernel;
 use crate::operators::{Neighbour, Operators};
+use crate::riemann::Medium;
 use crate::source::Source;
 use std::sync::Arc;
 
@@ -73,8 +74,8 @@ pub struct Scheme {
     pub(super) bodies: Option<super::angular_momentum::Bodies>,
     /// The ranks that step the body together; none where it runs alone.
     pub(super) exchange: Option<Arc<dyn Exchange>>,
-    /// Whether the mesh has cells that are much longer than wide.
-    pub(super) long_cells: bool,
+    /// What cells of each law are made of, found once: a law is a dynamic call away.
+    pub(super) media: Vec<Medium<f64>>,
     /// Which blocks each rank has; none where ranks have runs of equal weight.
     pub(super) partition: Option<Partition>,
     /// The instruction set.
@@ -128,6 +129,12 @@ impl Scheme {
         let (histories, boundary_memory) =
             (Histories::new(&operators, &laws), BoundaryMemory::new(&operators, &boundaries));
         let long_cells = operators.geometry.has_long_cells();
+        let media = laws.iter().map(|law| {
+            Medium::new(law.density(), law.shear_modulus(), degree)
+                .objective(law.is_objective())
+                .in_long_cells(long_cells)
+        });
+        let media = media.collect();
         let sees_faces = boundaries.iter().any(|boundary| boundary.sees_faces());
         let moduli = super::springs::moduli(&laws, &flux);
         let (sources, corrections, curl, kernel) = (vec![], vec![], None, Kernel::widest());
@@ -150,7 +157,7 @@ impl Scheme {
             bodies: None,
             exchange: None,
             partition: None,
-            long_cells,
+            media,
             kernel,
             scene: String::new(),
         })

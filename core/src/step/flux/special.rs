@@ -1,4 +1,4 @@
-//! The faces of blocks that have more than others: springs ([`super::super::creep`]), or cells with curved edges.
+//! The faces of blocks that have more than others: springs ([`super::super::creep`]), cells with curved edges, or a law of the small strain.
 //!
 //! A kernel of their own, so that all other blocks pay nothing for them. As a branch in the loops of [`Faces`] they took 12 % more
 //! instructions there, with neither in the scene: a metric that may lie in memory or not is no longer kept in registers.
