@@ -166,16 +166,34 @@ impl Block<'_> {
         meter: &mut Meter,
     ) {
         let (plan, m) = (&self.scheme.operators.blocks.plan[self.number], self.scheme.operators.line.m);
+        let with_forces = built::FORCES && meter.forces.is_some();
         for face in (0..FACES).filter(|face| plan[*face].has_boundary_or_interface) {
             let held = &mut held[2 * m * face..2 * m * (face + 1)];
             let lift = &mut lift[UNKNOWNS * m * face..UNKNOWNS * m * (face + 1)];
             let start = meter.phases.start();
-            let before = if built::FORCES { meter.work_so_far() } else { None };
-            self.single_fluxes(sides.of(face), lift, held, springs.as_mut(), meter);
-            if let Some(before) = before {
-                self.forces_at_face(face, lift, before, meter);
+            let (sides, springs) = (sides.of(face), springs.as_mut());
+            match with_forces {
+                true => self.single_fluxes_with_forces(sides, lift, held, springs, meter),
+                false => self.single_fluxes(sides, lift, held, springs, meter),
             }
             meter.phases.book_part(Part::Conditions, start);
+        }
+    }
+
+    /// [`Block::single_fluxes`], and the forces at the face booked.
+    #[inline(never)]
+    fn single_fluxes_with_forces(
+        &self,
+        sides: Sides,
+        lift: &mut [F8],
+        held: &mut [F8],
+        springs: Option<&mut Springs>,
+        meter: &mut Meter,
+    ) {
+        let before = meter.external.as_ref().map(|external| external.boundary);
+        self.single_fluxes(sides, lift, held, springs, meter);
+        if let Some(before) = before {
+            self.forces_at_face(sides.face, lift, before, meter);
         }
     }
 

@@ -4,7 +4,6 @@ use super::balance::BlockBalance;
 use super::creep::Creep;
 use super::outside::{ExternalWork, FaceForces};
 use super::phase::Ticks;
-use crate::lane::F8;
 
 /// Where the energy that passes the faces of a block goes.
 pub(super) struct Meter<'a> {
@@ -20,11 +19,4 @@ pub(super) struct Meter<'a> {
     pub creep: Option<Creep<'a>>,
     /// The clock of the thread.
     pub phases: &'a mut Ticks,
-}
-
-impl Meter<'_> {
-    /// The work of the boundary on the block so far; none where nobody asks for forces.
-    pub fn work_so_far(&self) -> Option<F8> {
-        self.forces.as_ref().and(self.external.as_ref()).map(|external| external.boundary)
-    }
 }
