@@ -17,9 +17,9 @@ pub trait Exchange: Debug + Send + Sync {
     /// How many there are.
     fn ranks(&self) -> usize;
 
-    /// Sends `send[r]` to each rank r, and receives from it as many numbers as `receive[r]` has. What is empty is not sent; lengths
-    /// agree.
-    fn swap(&self, send: &[Vec<f64>], receive: &mut [Vec<f64>]);
+    /// Sends `send[r]` to each rank r, does what there is to do `meanwhile`, and receives from each rank r as many numbers as `receive[r]`
+    /// has. What is empty is not sent; lengths agree.
+    fn swap(&self, send: &[Vec<f64>], receive: &mut [Vec<f64>], meanwhile: &mut (dyn FnMut() + Send));
 
     /// Gives all ranks what each of them has: rank r has the numbers `first[r]..first[r + 1]` of `all`; `first` is the same
     /// everywhere.

@@ -207,12 +207,12 @@ impl Exchange for Engine {
         self.ranks
     }
 
-    fn swap(&self, send: &[Vec<f64>], receive: &mut [Vec<f64>]) {
+    fn swap(&self, send: &[Vec<f64>], receive: &mut [Vec<f64>], meanwhile: &mut (dyn FnMut() + Send)) {
         let full = |letters: &[Vec<f64>]| letters.iter().any(|letter| !letter.is_empty());
         if !full(send) && !full(receive) {
-            return;
+            return meanwhile();
         }
-        let clock = Instant::now();
+        let mut clock = Instant::now();
         self.carry(Some(self.patience), |scope| {
             let mut pending = Vec::new();
             for (from, letter) in receive.iter_mut().enumerate().filter(|(_, letter)| !letter.is_empty()) {
@@ -223,6 +223,8 @@ impl Exchange for Engine {
                 Meter::add(&self.meter.messages, 1);
                 Meter::add(&self.meter.numbers, letter.len());
             }
+            meanwhile();
+            clock = Instant::now();
             Ok(pending)
         });
         Meter::add(&self.meter.swaps, 1);

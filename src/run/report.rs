@@ -279,6 +279,9 @@ fn shares_json(shares: &Shares) -> Option<Value> {
     out["seconds"] = json!(shares.seconds());
     if let Some(ranks) = shares.of_ranks() {
         out["ranks"] = of(ranks);
+        for (k, name) in ["pack", "wait", "unpack"].iter().enumerate() {
+            out["ranks"][name] = shares.messages().iter().map(|rank| rank[k]).collect();
+        }
     }
     Some(out)
 }

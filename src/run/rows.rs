@@ -21,6 +21,14 @@ impl Report {
             let text = format!("{measured:.3} (estimated {predicted:.3}): the most of one over the mean");
             rows.push(row(format!("imbalance of {who}"), text));
         }
+        let most = |k: usize| self.shares.messages().iter().map(|rank| rank[k]).fold(0.0, f64::max);
+        if !self.shares.messages().is_empty() {
+            let [pack, wait, unpack] = [0, 1, 2].map(|k| seconds(most(k)));
+            rows.push(row(
+                "messages",
+                format!("packed {pack}, waited {wait}, unpacked {unpack}: the most of one rank"),
+            ));
+        }
         rows.push(row("DoF-updates/s (CPU)", format!("{:.3e}", self.rate())));
         rows.push(row("memory", mebibytes(self.bytes)));
         if let (Some(first), Some(last)) = (&self.first, &self.last) {

@@ -56,7 +56,8 @@ impl Exchange for Thread {
     fn ranks(&self) -> usize {
         self.ranks
     }
-    fn swap(&self, send: &[Vec<f64>], receive: &mut [Vec<f64>]) {
+    fn swap(&self, send: &[Vec<f64>], receive: &mut [Vec<f64>], meanwhile: &mut (dyn FnMut() + Send)) {
+        meanwhile();
         self.hall.table.lock().unwrap().letters[self.rank] = send.to_vec();
         self.hall.meet(self.ranks);
         for (from, receive) in receive.iter_mut().enumerate() {

@@ -85,7 +85,7 @@ impl Ranks {
         if self.exchange.rank() == 0 {
             receive[from] = vec![0.0; count * LANES];
         }
-        self.exchange.swap(&send, &mut receive);
+        self.exchange.swap(&send, &mut receive, &mut || {});
         receive.swap_remove(from)
     }
 

@@ -14,7 +14,7 @@ use super::tiles::{Plan, Slot};
 use super::worst::Worst;
 use crate::error::Result;
 use crate::exchange::{Exchange, agree, numbers_of_all};
-use crate::lane::{F8, LANES};
+use crate::lane::{F8, LANES, ticks};
 use crate::mesh::FACES;
 use crate::operators::Neighbour;
 use std::collections::BTreeMap;
@@ -35,6 +35,8 @@ pub(super) struct Ranks {
     letters: [Vec<Vec<f64>>; 2],
     /// Numbers under way to all.
     all: Vec<f64>,
+    /// Ticks in which traces were packed, waited for, and unpacked.
+    pub(super) ticks: [u64; 3],
     /// Whether states are parts: each rank has those of its own blocks.
     pub parts: bool,
     /// Whether the last step has left this rank with the blocks of all.
@@ -91,6 +93,7 @@ impl Ranks {
             receive: vec![vec![vec![]; exchange.ranks()]; plan.phases()],
             letters: [0, 1].map(|_| vec![vec![]; exchange.ranks()]),
             all: vec![],
+            ticks: [0; 3],
             parts: !scheme.looks_at_all(),
             whole: true,
             exchange,
@@ -141,8 +144,16 @@ impl Ranks {
         }
     }
 
-    /// Gives others the traces that this rank has shown in a phase, and takes theirs; `numbers` are those of a block.
-    pub fn swap(&mut self, phase: usize, shown: &mut [Vec<F8>], numbers: usize) {
+    /// Gives others the traces that this rank has shown in a phase, and takes theirs; `numbers` are those of a block. `meanwhile` runs while
+    /// they are under way.
+    pub fn swap(
+        &mut self,
+        phase: usize,
+        shown: &mut [Vec<F8>],
+        numbers: usize,
+        meanwhile: impl FnOnce(&mut [Vec<F8>]) + Send,
+    ) {
+        let start = ticks();
         let [send, receive] = &mut self.letters;
         for (letter, faces) in send.iter_mut().zip(&self.send[phase]) {
             letter.clear();
@@ -158,7 +169,15 @@ impl Ranks {
         for (letter, faces) in receive.iter_mut().zip(&self.receive[phase]) {
             letter.resize(faces.iter().map(|face| face.count(numbers)).sum(), 0.0);
         }
-        self.exchange.swap(send, receive);
+        let (packed, mut meanwhile, mut busy) = (ticks(), Some(meanwhile), 0);
+        self.exchange.swap(send, receive, &mut || {
+            let start = ticks();
+            if let Some(run) = meanwhile.take() {
+                run(shown);
+            }
+            busy = ticks().wrapping_sub(start);
+        });
+        let come = ticks();
         for (letter, faces) in receive.iter().zip(&self.receive[phase]) {
             let mut letter = letter.iter();
             for face in faces {
@@ -167,6 +186,9 @@ impl Ranks {
                 }
             }
         }
+        let passed =
+            [packed.wrapping_sub(start), come.wrapping_sub(packed).saturating_sub(busy), ticks().wrapping_sub(come)];
+        self.ticks.iter_mut().zip(passed).for_each(|(sum, passed)| *sum += passed);
     }
 
     /// Gives all ranks what each has of `all`, rank r those of its blocks; numbers of block b begin at `first(b)`.

@@ -297,7 +297,7 @@ impl Scheme {
         finish: impl Fn(Finish) + Copy + Send + Sync,
     ) {
         let Work { tiles, next, speed, outside, balance, scratch, corrections, meetings, .. } = work;
-        let Tiles { tiles, phases, shown, slots, far, ranks, .. } = tiles;
+        let Tiles { tiles, phases, shown, slots, overlaps, far, ranks, .. } = tiles;
         let held = (next.components, next.part);
         let (u, internal, balance) = (&mut next.u[..], &mut next.internal[..], balance.as_deref_mut());
         let (worst, mut starts) = match corrections.as_deref_mut() {
@@ -324,29 +324,38 @@ impl Scheme {
                 }
                 _ => state,
             };
-            let (seen, showing) = shown.split_at_mut(phase * count);
             let outside = &outside.first[..];
             let (scheme, far, shared, meetings) = (self, *far, count > 1, meetings.as_deref());
-            let step = Step {
-                begin,
-                finish,
-                scheme,
-                stages,
-                state,
-                start,
-                survey,
-                slots,
-                outside,
-                far,
-                shared,
-                meetings,
-                scratch,
-                phase,
-                seen,
+            let mut run = |shown: &mut [Vec<F8>]| {
+                let (seen, showing) = shown.split_at_mut(phase * count);
+                let step = Step {
+                    begin,
+                    finish,
+                    scheme,
+                    stages,
+                    state,
+                    start,
+                    survey,
+                    slots,
+                    outside,
+                    far,
+                    shared,
+                    meetings,
+                    scratch,
+                    phase,
+                    seen,
+                };
+                step.run(&mut tiles[own.clone()], &mut showing[own.clone()], out.again());
             };
-            step.run(&mut tiles[own.clone()], &mut showing[own.clone()], out.again());
-            if let Some(ranks) = ranks {
-                ranks.swap(phase, shown, numbers);
+            match (ranks.as_deref_mut(), phase.checked_sub(1)) {
+                // The last phase shows nothing to others: all of them end in it.
+                (Some(ranks), Some(before)) if *overlaps => ranks.swap(before, shown, numbers, run),
+                (ranks, _) => {
+                    run(shown);
+                    if let Some(ranks) = ranks.filter(|_| !*overlaps) {
+                        ranks.swap(phase, shown, numbers, |_| {});
+                    }
+                }
             }
         }
     }

@@ -10,7 +10,14 @@ pub struct Shares {
     tiles: Vec<Seconds>,
     /// By rank; empty until [`Shares::gather`] has asked all of them.
     ranks: Vec<Part>,
+    /// The messages of this rank, and those by rank.
+    own_messages: Messages,
+    messages: Vec<Messages>,
 }
+
+/// Seconds in which a rank packed the traces that it sends, waited for those of others, and unpacked these. What travels while blocks are
+/// stepped is not waited for.
+pub type Messages = [f64; 3];
 
 /// Seconds in the phases of steps, without those in which a tile waits for others: as they were estimated before the first step, and
 /// as they were measured.
@@ -62,16 +69,29 @@ impl Shares {
         self.tiles.iter_mut().zip(step).for_each(|(sum, step)| *sum = [sum[0] + step[0], sum[1] + step[1]]);
     }
 
+    /// Adds the messages of a step.
+    pub(super) fn add_messages(&mut self, step: Messages) {
+        self.own_messages.iter_mut().zip(step).for_each(|(sum, step)| *sum += step);
+    }
+
     /// Gives all ranks what each of them has measured. All ranks call it, each with the same number of `threads`.
     pub fn gather(&mut self, exchange: &dyn Exchange, threads: usize) {
+        const NUMBERS: usize = 7;
         let first = (exchange.rank() * threads).min(self.tiles.len());
         let own = Part::of(&self.tiles[first..self.tiles.len().min(first + threads)]);
-        let mut all = vec![0.0; 4 * exchange.ranks()];
-        let numbers = [own.slowest, own.sum];
-        all[4 * exchange.rank()..][..4].copy_from_slice(numbers.as_flattened());
-        exchange.gather(&mut all, &(0..=exchange.ranks()).map(|rank| 4 * rank).collect::<Vec<_>>());
-        let part = |[a, b, c, d]: &[f64; 4]| Part { slowest: [*a, *b], sum: [*c, *d] };
-        self.ranks = all.as_chunks().0.iter().map(part).collect();
+        let mut all = vec![[0.0; NUMBERS]; exchange.ranks()];
+        let ([a, b], [c, d], [e, f, g]) = (own.slowest, own.sum, self.own_messages);
+        all[exchange.rank()] = [a, b, c, d, e, f, g];
+        let ends: Vec<usize> = (0..=exchange.ranks()).map(|rank| NUMBERS * rank).collect();
+        exchange.gather(all.as_flattened_mut(), &ends);
+        let part = |[a, b, c, d, ..]: &[f64; NUMBERS]| Part { slowest: [*a, *b], sum: [*c, *d] };
+        self.ranks = all.iter().map(part).collect();
+        self.messages = all.iter().map(|[.., e, f, g]| [*e, *f, *g]).collect();
+    }
+
+    /// The messages of each rank; none where there is one.
+    pub fn messages(&self) -> &[Messages] {
+        if self.messages.len() > 1 { &self.messages } else { &[] }
     }
 
     /// That of the threads, over all ranks; none where all blocks are one tile.

@@ -37,6 +37,8 @@ pub(super) struct Tiles {
     pub slots: Vec<Slot>,
     /// Whether the unknowns come from memory, see [`FAR`].
     pub far: bool,
+    /// See [`Plan::overlaps`].
+    pub overlaps: bool,
     /// The ranks that step the body together; none where it runs alone.
     pub ranks: Option<Box<Ranks>>,
 }
@@ -52,7 +54,7 @@ impl Tiles {
         let (threads, weights) = (rayon::current_num_threads().max(1), scheme.weights());
         let plan = match (&scheme.exchange, &scheme.partition) {
             (Some(_), Some(parts)) => Plan::of_parts(&graph, &weights, stages, &parts.first, threads),
-            (Some(exchange), None) => Plan::of_tiles(&graph, &weights, stages, threads * exchange.ranks()),
+            (Some(exchange), None) => Plan::of_ranks(&graph, &weights, stages, [exchange.ranks(), threads]),
             (None, _) => Plan::new(&graph, &weights, stages, threads),
         };
         // Corrections of stages need all blocks of a stage at once.
@@ -74,6 +76,7 @@ impl Tiles {
             shown: vec![vec![]; plan.shown.len()],
             shown_slots: plan.shown,
             slots: plan.slots,
+            overlaps: plan.overlaps,
             far: blocks.len() * stride * size_of::<F8>() > FAR,
             ranks,
         };
@@ -115,6 +118,9 @@ impl Tiles {
             let rate = rate();
             let share = |tile: &mut Tile| [tile.weight as f64 / 1e9, std::mem::take(&mut tile.busy) as f64 / rate];
             to.add(self.tiles.iter_mut().map(share));
+            if let Some(ranks) = &mut self.ranks {
+                to.add_messages(std::mem::take(&mut ranks.ticks).map(|ticks| ticks as f64 / rate));
+            }
         }
     }
 

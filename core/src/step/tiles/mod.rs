@@ -5,7 +5,8 @@
 //! that they stay in the cache. With several threads each has a tile of blocks, and first does all of it that needs nothing
 //! from beyond it: a layer of blocks less with each stage. Then, in a phase for each stage, they show each other the traces
 //! at the borders of the tiles, and each goes on as far as these reach. (Twice so, at the seams where two tiles begin and at
-//! those where they end: what waits at them would leave the cache meanwhile.) Nothing is done twice, nothing but these traces goes
+//! those where they end: what waits at them would leave the cache meanwhile.) Traces that go to another rank need a phase to get there,
+//! in which each does other blocks. Nothing is done twice, nothing but these traces goes
 //! from one processor to another, and the bits do not depend on it.
 
 mod division;
@@ -81,6 +82,8 @@ pub struct Plan {
     pub slots: Vec<Slot>,
     /// Slots of the traces that each tile shows: [phase][tile].
     pub shown: Vec<usize>,
+    /// Whether what a tile shows in a phase reaches other ranks after the next phase, during which it travels; else at once.
+    pub overlaps: bool,
 }
 
 /// Events in the time of which threads meet.
@@ -104,16 +107,21 @@ impl Plan {
 
     /// A plan for so many tiles of nearly equal weight; for one a block where there are fewer blocks.
     pub fn of_tiles(graph: &[Vec<usize>], weights: &[u64], stages: usize, tiles: usize) -> Self {
-        Planner::new(graph, stages, divide(weights, tiles)).plan()
+        Self::of_ranks(graph, weights, stages, [1, tiles])
     }
 
-    /// A plan for parts that begin at `first`, each of so many tiles of nearly equal weight and of at least as many blocks.
+    /// A plan for so many tiles of nearly equal weight on each of some ranks, `[ranks, tiles]`.
+    pub fn of_ranks(graph: &[Vec<usize>], weights: &[u64], stages: usize, [ranks, tiles]: [usize; 2]) -> Self {
+        Planner::new(graph, stages, divide(weights, ranks * tiles), tiles).plan()
+    }
+
+    /// A plan for parts, each of a rank, that begin at `first`, each of so many tiles of nearly equal weight and of at least as many blocks.
     pub fn of_parts(graph: &[Vec<usize>], weights: &[u64], stages: usize, first: &[usize], tiles: usize) -> Self {
         let part = |ends: &[usize]| {
             let shift = move |run: Range<usize>| run.start + ends[0]..run.end + ends[0];
             divide(&weights[ends[0]..ends[1]], tiles).into_iter().map(shift).collect::<Vec<_>>()
         };
-        Planner::new(graph, stages, first.windows(2).flat_map(part).collect()).plan()
+        Planner::new(graph, stages, first.windows(2).flat_map(part).collect(), tiles).plan()
     }
 
     /// The same tiles stage by stage: all blocks begin a stage in one phase, and finish it in the next one.
@@ -121,6 +129,7 @@ impl Plan {
         let (tiles, blocks) = (self.tiles.len(), self.tiles.last().map_or(0, |tile| tile.range.end));
         self.slots = vec![Slot::default(); stages * blocks];
         self.shown = vec![0; 2 * stages * tiles];
+        self.overlaps = false;
         for (number, tile) in self.tiles.iter_mut().enumerate() {
             let range = tile.range.clone();
             *tile = Tile { events: vec![], phases: vec![], rates: range.len(), traces: 0, range, falls: false };

@@ -107,15 +107,28 @@ impl Memory {
 
 /// Plays a plan: in each phase a tile sees what all have shown before it.
 fn play(graph: &[Vec<usize>], stages: usize, plan: &Plan) -> Vec<Option<u64>> {
+    play_on_ranks(graph, stages, plan, plan.tiles.len())
+}
+
+/// The same with so many tiles on each rank: where the plan overlaps, a tile of another rank has not seen what was shown in the phase before.
+fn play_on_ranks(graph: &[Vec<usize>], stages: usize, plan: &Plan, per_rank: usize) -> Vec<Option<u64>> {
     let mut next = vec![None; graph.len()];
     let memory = |tile: &Tile| Memory { rates: vec![vec![0; stages]; tile.rates], traces: vec![0; tile.traces] };
     let mut memories: Vec<Memory> = plan.tiles.iter().map(memory).collect();
     let mut seen: Vec<Vec<u64>> = vec![];
     for phase in 0..plan.phases() {
         let mut shown = vec![];
-        for (memory, tile) in memories.iter_mut().zip(&plan.tiles) {
+        for (number, (memory, tile)) in memories.iter_mut().zip(&plan.tiles).enumerate() {
             let events = &tile.events[tile.phases[phase].clone()];
             assert!(events.iter().all(|event| tile.range.contains(&(event.block as usize))));
+            let mut seen = seen.clone();
+            let last = seen.len().saturating_sub(plan.tiles.len());
+            for (other, seen) in seen[last..].iter_mut().enumerate() {
+                if plan.overlaps && other / per_rank != number / per_rank {
+                    // Still under way: no value that a block could have.
+                    seen.fill(u64::MAX);
+                }
+            }
             shown.push(memory.play(events, plan, graph, &seen, &mut next));
         }
         seen.extend(shown);
@@ -145,6 +158,18 @@ fn check(graph: &[Vec<usize>], weights: &[u64], stages: usize, tiles: usize) -> 
     plan
 }
 
+/// Checks the plan for ranks of so many tiles each.
+fn check_on_ranks(graph: &[Vec<usize>], stages: usize, [ranks, tiles]: [usize; 2]) -> Plan {
+    let plan = Plan::of_ranks(graph, &equal(graph), stages, [ranks, tiles]);
+    assert_eq!(plan.overlaps, plan.tiles.len() > tiles);
+    assert_eq!(play_on_ranks(graph, stages, &plan, tiles), stage_by_stage(graph, stages));
+    let events: usize = plan.tiles.iter().map(|tile| tile.events.len()).sum();
+    assert_eq!(events, 2 * stages * graph.len(), "something is done twice");
+    // What is shown in the last phase would reach nobody.
+    assert!(!plan.overlaps || plan.shown.iter().rev().take(plan.tiles.len()).all(|shown| *shown == 0));
+    plan
+}
+
 /// Weights of so many blocks, most of them alike and some a thousand times as heavy as others.
 fn any_weights(blocks: usize) -> impl Strategy<Value = Vec<u64>> {
     let weight = prop_oneof![4 => Just(700), 2 => 1u64..5000, 1 => 10_000u64..1_000_000];
@@ -171,6 +196,13 @@ proptest! {
         n in 1usize..200, reach in 1usize..3, ring: bool, stages in 1usize..4, tiles in 1usize..6,
         links in prop::collection::vec((0usize..200, 0usize..200), 0..6), weights in any_weights(200)) {
         check(&tangled(n, reach, ring, &links), &weights[..n], stages, tiles);
+    }
+
+    #[test]
+    fn every_plan_on_ranks_gives_what_all_blocks_give_stage_by_stage(
+        n in 1usize..200, reach in 1usize..3, ring: bool, stages in 1usize..6, ranks in 1usize..5, tiles in 1usize..4,
+        links in prop::collection::vec((0usize..200, 0usize..200), 0..6)) {
+        check_on_ranks(&tangled(n, reach, ring, &links), stages, [ranks, tiles]);
     }
 
     #[test]
@@ -213,6 +245,24 @@ fn tiles_meet_once_for_each_stage_at_both_ends_and_show_a_layer_each_time() {
                 assert!(shown.iter().all(|&shown| shown <= if tiles == 3 { 8 } else { 4 }), "{shown:?}");
                 assert_eq!(shown.iter().sum::<usize>(), seams * 4 * stages);
             }
+        }
+    }
+}
+
+#[test]
+fn messages_of_ranks_travel_while_most_blocks_are_stepped() {
+    for (ring, stages) in [(false, 1), (true, 1), (false, 4), (true, 4)] {
+        let graph = sheet(200, 4, ring);
+        let plan = check_on_ranks(&graph, stages, [2, 1]);
+        assert_eq!(plan.phases(), 2 * stages + 1);
+        for tile in &plan.tiles {
+            let events = |phases: &dyn Fn(usize) -> bool| -> usize {
+                (0..plan.phases()).filter(|phase| phases(*phase)).map(|phase| tile.phases[phase].len()).sum()
+            };
+            // Messages travel in odd phases; even ones hold the layers at the seams: one more than stages at each of up to two seams,
+            // of 100 rows.
+            let (hidden, all) = (events(&|phase| phase % 2 == 1), 2 * stages * 400);
+            assert!(hidden * 100 >= all * (100 - 2 * (stages + 1)), "{ring} {stages}: {hidden} of {all}");
         }
     }
 }
