@@ -45,6 +45,26 @@ impl ExactSum {
         }
     }
 
+    /// Numbers of [`ExactSum::write`].
+    pub const NUMBERS: usize = LIMBS + 1;
+
+    /// Writes it as numbers that hold it exactly: its limbs, carried, and the plain sum of the terms that are not finite.
+    pub fn write(&self, to: &mut [f64]) {
+        let mut own = self.clone();
+        own.carry();
+        // Whole numbers up to 2^32, and the last of them small.
+        to.iter_mut().zip(own.limbs).for_each(|(to, limb)| *to = limb as f64);
+        to[LIMBS] = self.odd;
+    }
+
+    /// Adds a sum that was written.
+    pub fn add_written(&mut self, from: &[f64]) {
+        self.carry();
+        self.limbs.iter_mut().zip(from).for_each(|(limb, from)| *limb += *from as i64);
+        self.odd += from[LIMBS];
+        self.carry();
+    }
+
     /// As it was before its first term.
     pub fn clear(&mut self) {
         *self = Self::default();
@@ -127,6 +147,21 @@ mod tests {
             let mut other = terms.clone();
             other.sort_by_key(|x| x.to_bits().wrapping_mul(seed | 1));
             prop_assert_eq!(exact_sum(terms).to_bits(), exact_sum(other).to_bits());
+        }
+
+        #[test]
+        fn sums_of_parts_that_were_written_make_the_sum_of_all(
+            parts in prop::collection::vec(prop::collection::vec(any::<u64>().prop_map(f64::from_bits), 0..9), 1..5),
+        ) {
+            let mut all = ExactSum::default();
+            for part in &parts {
+                let (mut own, mut numbers) = (ExactSum::default(), [0.0; ExactSum::NUMBERS]);
+                part.iter().for_each(|x| own.add(*x));
+                own.write(&mut numbers);
+                all.add_written(&numbers);
+            }
+            let (all, once) = (all.value(), exact_sum(parts.concat()));
+            prop_assert!(all.to_bits() == once.to_bits() || all.is_nan() && once.is_nan());
         }
 
         #[test]

@@ -9,7 +9,7 @@ use crate::lane::{F8, Lanes};
 use crate::material::{Material, Past, count, virgin};
 use crate::operators::with_nodes;
 use crate::state::State;
-use crate::sum::exact_sum;
+use crate::sum::{ExactSum, exact_sum};
 use crate::tensor::DEFORMATION;
 use rayon::prelude::*;
 
@@ -116,8 +116,13 @@ impl Scheme {
     }
 
     fn sum_of_cells(&self, cells: &[F8]) -> f64 {
-        exact_sum(cells.iter().zip(&self.operators.blocks.count).map(|(cells, &count)| cells.0[..count].iter().sum()))
+        exact_sum(of_blocks(cells, &self.operators.blocks.count))
     }
+}
+
+/// The sum of the cells of each of some blocks that have so many.
+fn of_blocks(cells: &[F8], count: &[usize]) -> impl Iterator<Item = f64> {
+    cells.iter().zip(count).map(|(cells, &count)| cells.0[..count].iter().sum())
 }
 
 impl Memory {
@@ -126,11 +131,12 @@ impl Memory {
         let Some(own) = self.tiles.ranks.as_ref().map(|ranks| ranks.own()) else {
             return scheme.energy(state, self, cells);
         };
-        cells.resize(scheme.operators.blocks.len(), F8::ZERO);
-        scheme.energy_of_cells((state, own.start), self, &mut cells[own]);
-        if let Some(ranks) = &mut self.tiles.ranks {
-            ranks.gather(cells, |block| block);
-        }
-        scheme.sum_of_cells(cells)
+        cells.resize(own.len(), F8::ZERO);
+        scheme.energy_of_cells((state, own.start), self, cells);
+        let mut sum = ExactSum::default();
+        of_blocks(cells, &scheme.operators.blocks.count[own]).for_each(|energy| sum.add(energy));
+        let Some(ranks) = &mut self.tiles.ranks else { return sum.value() };
+        let [energy] = ranks.sum([sum]);
+        energy
     }
 }

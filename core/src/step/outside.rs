@@ -7,6 +7,7 @@ use crate::mesh::FACES;
 use crate::operators::Neighbour;
 use crate::state::Received;
 use crate::sum::{ExactSum, exact_sum};
+use std::ops::Range;
 
 /// Work on the cells of a block in a step, J/m, a lane a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -40,6 +41,8 @@ pub(super) struct Outside {
     cells: Vec<usize>,
     /// The entries.
     pub entries: Vec<ExternalWork>,
+    /// The sums over all ranks of boundary and source after a step of several ranks that gave each other no entries.
+    pub of_all: Option<[f64; 2]>,
     /// By face, beside the entries; none where nobody asks for forces: nothing is allocated and nothing is done for them then.
     pub forces: Option<Vec<FaceForces>>,
     /// Beside them; none where angular momentum is not kept.
@@ -52,8 +55,15 @@ impl Outside {
     /// No work on any block of a scheme yet.
     pub fn new(scheme: &Scheme) -> Self {
         let blocks = &scheme.operators.blocks;
-        let mut out =
-            Self { first: vec![0], cells: vec![], entries: vec![], forces: None, torques: None, sums: vec![] };
+        let mut out = Self {
+            first: vec![0],
+            cells: vec![],
+            entries: vec![],
+            of_all: None,
+            forces: None,
+            torques: None,
+            sums: vec![],
+        };
         for (faces, &count) in blocks.neighbours.iter().zip(&blocks.count) {
             let at_boundary = faces.iter().flatten().any(|beyond| matches!(beyond, Neighbour::Boundary(_)));
             if at_boundary || !scheme.sources.is_empty() {
@@ -66,6 +76,17 @@ impl Outside {
         out.forces = scheme.contacts.as_ref().map(|_| vec![FaceForces::default(); out.cells.len()]);
         out.torques = scheme.keeps_angular_momentum().then(|| vec![Torques::default(); out.cells.len()]);
         out
+    }
+
+    /// The work of boundary and sources on the blocks of some entries, J/m.
+    pub fn sums_of(&self, entries: Range<usize>) -> [ExactSum; 2] {
+        let mut sums = <[ExactSum; 2]>::default();
+        for (work, &cells) in self.entries[entries.clone()].iter().zip(&self.cells[entries]) {
+            for (sum, lanes) in sums.iter_mut().zip([&work.boundary, &work.source]) {
+                sum.add(lanes.0[..cells].iter().sum());
+            }
+        }
+        sums
     }
 
     /// Bytes held.
@@ -89,11 +110,8 @@ impl Work {
     /// The work of the boundary, of sources, and of what acts between faces of the body in the last step, J/m, by exact sums. The last
     /// is no work of the outside: contact takes it from the body.
     pub fn external_work(&self, scheme: &Scheme) -> [f64; 3] {
-        let sum = |of: fn(&ExternalWork) -> &F8| {
-            let entries = self.outside.entries.iter().map(of).zip(&self.outside.cells);
-            exact_sum(entries.map(|(lanes, &cells)| lanes.0[..cells].iter().sum()))
-        };
-        let [boundary, source] = [sum(|work| &work.boundary), sum(|work| &work.source)];
+        let own = || self.outside.sums_of(0..self.outside.entries.len()).map(|sum| sum.value());
+        let [boundary, source] = self.outside.of_all.unwrap_or_else(own);
         let (Some(contacts), Some(forces)) = (&scheme.contacts, &self.outside.forces) else {
             return [boundary, source, 0.0];
         };

@@ -17,6 +17,7 @@ use crate::exchange::{Exchange, agree, numbers_of_all};
 use crate::lane::{F8, LANES, ticks};
 use crate::mesh::FACES;
 use crate::operators::Neighbour;
+use crate::sum::ExactSum;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -208,6 +209,24 @@ impl Ranks {
                 to.read(from);
             }
         }
+    }
+
+    /// The sums over all ranks of what each of them has summed: whatever the ranks, the bits of one sum.
+    pub fn sum<const N: usize>(&mut self, own: [ExactSum; N]) -> [f64; N] {
+        let (rank, count) = (self.exchange.rank(), N * ExactSum::NUMBERS);
+        self.all.clear();
+        self.all.resize(self.exchange.ranks() * count, 0.0);
+        for (own, to) in own.iter().zip(self.all[rank * count..].chunks_exact_mut(ExactSum::NUMBERS)) {
+            own.write(to);
+        }
+        let ends: Vec<usize> = (0..=self.exchange.ranks()).map(|rank| rank * count).collect();
+        self.exchange.gather(&mut self.all, &ends);
+        let mut sums: [ExactSum; N] = std::array::from_fn(|_| ExactSum::default());
+        for numbers in self.all.chunks_exact(count) {
+            let each = numbers.chunks_exact(ExactSum::NUMBERS);
+            sums.iter_mut().zip(each).for_each(|(sum, numbers)| sum.add_written(numbers));
+        }
+        sums.map(|sum| sum.value())
     }
 
     /// Gives all ranks what the sides of segments have received: each side on the rank of its cell, 0 elsewhere.

@@ -41,7 +41,13 @@ impl Work {
         let Some(ranks) = ranks else { return };
         ranks.whole = false;
         let entry = |block: usize| outside.first[block] as usize;
-        ranks.gather(&mut outside.entries, entry);
+        // Forces and what looks at the whole body read it block by block.
+        if outside.forces.is_some() || scheme.looks_at_all() {
+            ranks.gather(&mut outside.entries, entry);
+        } else {
+            let own = ranks.own();
+            outside.of_all = Some(ranks.sum(outside.sums_of(entry(own.start)..entry(own.end))));
+        }
         if let Some(forces) = &mut outside.forces {
             ranks.gather(forces, entry);
         }
