@@ -40,10 +40,10 @@ proptest! {
     #[test]
     fn contact_pushes_and_never_makes_energy(at in meeting(), friction in 0.0..2.0f64) {
         let t = Sliding { friction }.traction(&at, &mut []);
-        // Friction from the push of an overlap alone leaves rounding along the normal.
-        prop_assert!(dot(t, at.normal) <= 1e-15);
+        // Rounding of some operations on tractions below 100.
+        prop_assert!(dot(t, at.normal) <= 1e-13);
         let pressure = Sliding { friction }.push(&at) - dot(t, at.normal);
-        prop_assert!(dot(t, tangent(at.normal)).abs() <= friction * pressure + 1e-15);
+        prop_assert!(dot(t, tangent(at.normal)).abs() <= friction * pressure + 1e-13);
         let [one, two] = stars(&at, t);
         // The power of both sides, to rounding of products below 1000.
         prop_assert!(dot(t, one) - dot(t, two) <= 1e-12);

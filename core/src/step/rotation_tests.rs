@@ -15,8 +15,11 @@ fn rough(_: [f64; 2], a: usize) -> [f64; 6] {
 fn relaxed(mesh: &Mesh, kind: Kind, degree: usize, law: Option<Law>) -> [Vec<f64>; 2] {
     [true, false].map(|on| {
         let base = scheme(mesh, kind, degree, &midpoints(mesh, degree), wall);
-        let laws = law.clone().map_or(base.laws.clone(), |law| vec![law]);
-        let scheme = Scheme { curl: base.curl.filter(|_| on), laws, ..base };
+        let base = Scheme { curl: base.curl.filter(|_| on), ..base };
+        let scheme = match &law {
+            Some(law) => base.with_laws(vec![law.clone()]),
+            None => base,
+        };
         let mut state = state(mesh, &scheme, rough);
         march(&scheme, &mut state, 1, 1e-3);
         unpacked(&scheme, &state)

@@ -128,13 +128,7 @@ impl Scheme {
         }
         let (histories, boundary_memory) =
             (Histories::new(&operators, &laws), BoundaryMemory::new(&operators, &boundaries));
-        let long_cells = operators.geometry.has_long_cells();
-        let media = laws.iter().map(|law| {
-            Medium::new(law.density(), law.shear_modulus(), degree)
-                .objective(law.is_objective())
-                .in_long_cells(long_cells)
-        });
-        let media = media.collect();
+        let media = media(&operators, &laws);
         let sees_faces = boundaries.iter().any(|boundary| boundary.sees_faces());
         let moduli = super::springs::moduli(&laws, &flux);
         let (sources, corrections, curl, kernel) = (vec![], vec![], None, Kernel::widest());
@@ -161,6 +155,14 @@ impl Scheme {
             kernel,
             scene: String::new(),
         })
+    }
+
+    /// With other laws, and all that follows from them.
+    #[cfg(test)]
+    pub(crate) fn with_laws(self, laws: Vec<Law>) -> Self {
+        let (histories, media) = (Histories::new(&self.operators, &laws), media(&self.operators, &laws));
+        let moduli = super::springs::moduli(&laws, &self.flux);
+        Self { laws, histories, media, moduli, ..self }
     }
 
     /// Whether the predictor samples laws away from the Gauss nodes. The stress at the nodes is then a fit of that at the points, whose power is
@@ -279,6 +281,16 @@ impl Scheme {
             Method::RungeKutta(tableau) => tableau.stages(),
         }
     }
+}
+
+/// What cells of each law are made of.
+fn media(operators: &Operators, laws: &[Law]) -> Vec<Medium<f64>> {
+    let long_cells = operators.geometry.has_long_cells();
+    let of_law = |law: &Law| {
+        let medium = Medium::new(law.density(), law.shear_modulus(), operators.degree);
+        medium.objective(law.is_objective()).in_long_cells(long_cells)
+    };
+    laws.iter().map(of_law).collect()
 }
 
 /// How many materials and boundary groups the blocks name.

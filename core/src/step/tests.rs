@@ -214,7 +214,7 @@ pub(super) fn chessboard(mesh: &Mesh, kind: Kind) -> (Scheme, Vec<f64>) {
     let operators = Operators::build(mesh, &links(mesh).unwrap(), &material, &needs).unwrap();
     let heavy = Law::new(NeoHookean::new(3.0, 0.2, 9.0));
     let densities = material.iter().map(|&m| if m == 0 { 1.3 } else { 9.0 }).collect();
-    (Scheme { operators, laws: vec![steel(), heavy], ..base }, densities)
+    (Scheme { operators, ..base }.with_laws(vec![steel(), heavy]), densities)
 }
 
 #[test]

@@ -85,7 +85,7 @@ fn small_steps_lose_what_jumps_take_for_any_flux_and_condition() {
         for flux in [Flux::new(Rusanov), Flux::new(Acoustic), Flux::new(AcousticCurl)] {
             for law in [steel(), Law::new(LinearElastic::new(1.0, 0.3, 1.3))] {
                 let what = format!("{name}, {flux:?}, {law:?}");
-                let scheme = Scheme { flux: flux.clone(), laws: vec![law], ..rk4(&mesh, 2, boundary) };
+                let scheme = Scheme { flux: flux.clone(), ..rk4(&mesh, 2, boundary) }.with_laws(vec![law]);
                 let mut state = state(&mesh, &scheme, rough);
                 let (balance, energy) = metered(&scheme, &mut state, 5, 1e-4);
                 assert_explained(&what, &balance, energy);
