@@ -6,7 +6,12 @@ cd "$(dirname "$0")/.."
 # DOLFINx belongs to Debian's own python3; it finds no packages of .venv and needs none.
 dolfinx_python=/usr/bin/python3
 has_dolfinx() { "$dolfinx_python" -c 'import dolfinx, h5py' 2>/dev/null; }
-has_dolfinx || tools/apt.sh python3-dolfinx-real python3-h5py || true
+# It is installed while cargo builds, which takes longer.
+has_dolfinx || tools/apt.sh python3-dolfinx-real python3-h5py &
+# Examples are compiled by clippy, in CI and for who changes them.
+tests=(--release --lib --bins --tests)
+cargo test "${tests[@]}" --no-run
+wait
 if has_dolfinx; then
     export DGMPM_DOLFINX_PYTHON=$dolfinx_python
 else
@@ -14,8 +19,7 @@ else
 fi
 
 export DGMPM_PYTHON=$PWD/.venv/bin/python DGMPM_REQUIRE_PYTHON=1
-# Examples are compiled by clippy, in CI and for who changes them.
-cargo test --release --lib --bins --tests
+cargo test "${tests[@]}"
 cargo test --release --doc
 tools/ranks.sh
 "$DGMPM_PYTHON" -m pytest -q tests/python
