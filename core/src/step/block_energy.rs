@@ -5,7 +5,7 @@ use super::block_work::LawWork;
 use super::history::recall;
 use super::volume::Masses;
 use super::{Scheme, Scratch, Work as Memory, dense, with_scratch};
-use crate::lane::{F8, Lanes};
+use crate::lane::{F8, Lanes, store_array};
 use crate::material::{Material, Past, count, virgin};
 use crate::operators::with_nodes;
 use crate::state::State;
@@ -31,44 +31,62 @@ pub(super) struct BlockEnergy<'a> {
     pub scratch: &'a mut Scratch,
 }
 
+/// The energy of the cells of a block by kind, J/m, a lane a cell.
+#[derive(Default)]
+pub(super) struct Parts {
+    /// Kinetic energy.
+    pub kinetic: F8,
+    /// Strain energy.
+    pub strain: F8,
+    /// What the law has dissipated; 0 of a law without memory.
+    pub dissipated: F8,
+    /// What the springs of the faces store.
+    pub in_faces: F8,
+}
+
 impl BlockEnergy<'_> {
     /// Finds it.
     pub fn find(self) -> F8 {
+        let Parts { kinetic, strain, dissipated, in_faces } = self.parts();
+        F8(std::array::from_fn(|lane| kinetic.0[lane] + (strain.0[lane] + dissipated.0[lane]) + in_faces.0[lane]))
+    }
+
+    /// Finds it by kind.
+    pub fn parts(self) -> Parts {
         let operators = &self.scheme.operators;
         let (line, metric) = (&operators.line, operators.geometry.of(self.block));
         let masses = &mut self.scratch.nodes.masses;
         with_nodes!(line.m, M => { self.scheme.kernel.run(Masses::<'_, M> { line, metric, masses }); });
         let law = &self.scheme.laws[self.scheme.operators.blocks.material[self.block]];
         let in_faces = self.scheme.stored_by_creep(self.block, self.creep);
-        let mut out = law.block().stored_energy(self.scheme.kernel, StoredEnergy(self));
-        out.0.iter_mut().zip(in_faces.0).for_each(|(out, stored)| *out += stored);
-        out
+        let [kinetic, strain, dissipated] = law.block().stored_energy(self.scheme.kernel, StoredEnergy(self));
+        Parts { kinetic, strain, dissipated, in_faces }
     }
 }
 
-/// The same under the type of the law.
+/// Kinetic, strain and dissipated energy under the type of the law.
 pub(super) struct StoredEnergy<'a>(BlockEnergy<'a>);
 
 impl LawWork for StoredEnergy<'_> {
-    type Out = F8;
+    type Out = [F8; 3];
     #[inline(always)]
-    fn run<L: Lanes, M: Material>(self, law: M) -> F8 {
+    fn run<L: Lanes, M: Material>(self, law: M) -> [F8; 3] {
         let BlockEnergy { scheme, block, u, internal, dt, scratch, .. } = self.0;
-        let mut out = F8::ZERO;
-        let moving = kinetic_energy::<L>(law.density(), &scratch.nodes.masses, u);
-        let strain = if count::<M>() == 0 {
-            at_nodes::<L, _>(law, &scratch.nodes.masses, u)
+        let kinetic = kinetic_energy::<L>(law.density(), &scratch.nodes.masses, u);
+        let (mut strain, mut dissipated) = (L::zero(), L::zero());
+        if count::<M>() == 0 {
+            strain = at_nodes::<L, _>(law, &scratch.nodes.masses, u);
         } else {
             let points = at_points::<L>(scheme, u, block, &mut scratch.nodes, &mut scratch.points);
             let weights = scheme.histories.weights(block);
-            let mut sum = L::zero();
             for (p, weight) in weights.iter().enumerate() {
                 let (f, past) = (points.at::<L>(p), Past { history: recall::<L, M>(internal, p), dt });
-                sum = L::load(weight).mul_add(law.energy(f, &past) + law.dissipated(f, &past), sum);
+                strain = L::load(weight).mul_add(law.energy(f, &past), strain);
+                dissipated = L::load(weight).mul_add(law.dissipated(f, &past), dissipated);
             }
-            sum
-        };
-        (moving + strain).store(&mut out);
+        }
+        let mut out = [F8::ZERO; 3];
+        store_array([kinetic, strain, dissipated], &mut out);
         out
     }
 }

@@ -1,15 +1,12 @@
 //! Totals of a state by grid quadrature (sums over points with volumes are wrong for most layouts). What a law with memory
 //! stores and dissipates is known at its points alone, from their own F and history: there the weights are int chi_p dX.
 
-use super::Scheme;
-use super::predictor::transfer::{FieldsToPoints, factors};
-use crate::lane::{Coefficient, F8};
-use crate::mesh::map;
-use crate::operators::{PointMatrices, Share, determinant};
-use crate::state::{State, UNKNOWNS};
-use crate::sum::exact_sum;
-use crate::tensor::{self, DEFORMATION};
+use super::{Scheme, Scratch, Work};
+use crate::state::State;
+use crate::sum::ExactSum;
+use crate::tensor::DEFORMATION;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Totals per unit thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,17 +85,6 @@ impl Totals {
         max_drift: None,
     };
 
-    /// No cell yet of a state with or without displacement and memory.
-    fn empty(state: &State) -> Self {
-        let known = state.has_displacement().then_some(0.0);
-        Totals {
-            angular_momentum: known,
-            max_drift: known,
-            dissipated: (!state.internal.is_empty()).then_some(0.0),
-            ..Totals::EMPTY
-        }
-    }
-
     /// Kinetic and strain energy, and that of the springs in faces, J/m.
     pub fn energy(&self) -> f64 {
         self.kinetic + self.strain + self.in_faces
@@ -122,155 +108,98 @@ impl Totals {
         self.max_drift = self.max_drift.zip(other.max_drift).map(|(a, b)| a.max(b));
     }
 
-    /// The totals of `parts`, of which these, of no cell, know what is to be summed.
-    fn with_sums_of(mut self, parts: &[&Totals]) -> Self {
-        parts.iter().for_each(|part| self.add(part));
-        let sum = |of: &dyn Fn(&Totals) -> f64| exact_sum(parts.iter().map(|part| of(part)));
-        let known = |whole: Option<f64>, of: &dyn Fn(&Totals) -> Option<f64>| {
-            whole.map(|_| exact_sum(parts.iter().filter_map(|part| of(part))))
-        };
+    /// Those that are sums over the body.
+    fn sums(&self) -> [f64; SUMS] {
+        let ([p1, p2], [f11, f12, f21, f22]) = (self.momentum, self.deformation);
+        let (dissipated, turning) = (self.dissipated.unwrap_or(0.0), self.angular_momentum.unwrap_or(0.0));
+        [self.kinetic, self.strain, self.in_faces, dissipated, turning, p1, p2, f11, f12, f21, f22]
+    }
+
+    /// These, with others for [`Totals::sums`].
+    fn with_sums(self, sums: [f64; SUMS]) -> Self {
+        let [kinetic, strain, in_faces, dissipated, turning, p1, p2, f11, f12, f21, f22] = sums;
         Totals {
-            kinetic: sum(&|part| part.kinetic),
-            strain: sum(&|part| part.strain),
-            in_faces: sum(&|part| part.in_faces),
-            dissipated: known(self.dissipated, &|part| part.dissipated),
-            momentum: std::array::from_fn(|k| sum(&|part| part.momentum[k])),
-            angular_momentum: known(self.angular_momentum, &|part| part.angular_momentum),
-            deformation: std::array::from_fn(|k| sum(&|part| part.deformation[k])),
+            kinetic,
+            strain,
+            in_faces,
+            dissipated: self.dissipated.map(|_| dissipated),
+            angular_momentum: self.angular_momentum.map(|_| turning),
+            momentum: [p1, p2],
+            deformation: [f11, f12, f21, f22],
             ..self
         }
     }
 }
 
+/// How many of the [`Totals`] are sums over the body.
+const SUMS: usize = 11;
+
+/// Totals of blocks that are added up: by exact sums until they are rounded once, so that the order of the blocks does not matter.
+struct Sum {
+    sums: [ExactSum; SUMS],
+    /// What is largest or smallest.
+    rest: Totals,
+}
+
+impl Sum {
+    /// The sum of `blocks`; `none` are the totals of no cell.
+    fn of<'a>(none: Totals, blocks: impl IntoIterator<Item = &'a Totals>) -> Self {
+        let mut out = Self { sums: Default::default(), rest: none };
+        for block in blocks {
+            out.rest.add(block);
+            out.sums.iter_mut().zip(block.sums()).for_each(|(sum, value)| sum.add(value));
+        }
+        out
+    }
+
+    fn rounded(self) -> Totals {
+        self.rest.with_sums(self.sums.map(|sum| sum.value()))
+    }
+}
+
 impl Scheme {
-    /// Totals of a state; the sums over the blocks are exact until they are rounded once, so that the order of the blocks does not
-    /// matter.
+    /// Totals of a state.
     pub fn totals(&self, state: &State) -> Totals {
-        Totals::empty(state).with_sums_of(&self.totals_of_blocks(state).iter().collect::<Vec<_>>())
+        let blocks = self.totals_of_blocks(state, 0..self.operators.blocks.len());
+        Sum::of(self.no_totals(state), &blocks).rounded()
     }
 
     /// Totals of the cells of each law, in the order of the laws.
     pub fn totals_by_law(&self, state: &State) -> Vec<Totals> {
-        let blocks = self.totals_of_blocks(state);
+        let blocks = self.totals_of_blocks(state, 0..self.operators.blocks.len());
         let of_law = |law: usize| {
             let own = blocks.iter().zip(&self.operators.blocks.material).filter(|(_, of)| **of == law);
-            Totals::empty(state).with_sums_of(&own.map(|(block, _)| block).collect::<Vec<_>>())
+            Sum::of(self.no_totals(state), own.map(|(block, _)| block)).rounded()
         };
         (0..self.laws.len()).map(of_law).collect()
     }
 
-    fn totals_of_blocks(&self, state: &State) -> Vec<Totals> {
-        (0..self.operators.blocks.len())
-            .into_par_iter()
-            .map(|block| {
-                let mut sum = Totals::empty(state);
-                let points = self.deformation_at_points(state, block);
-                let in_faces = self.stored_by_creep(block, self.creep_of(state, block));
-                for lane in 0..self.operators.blocks.count[block] {
-                    sum.add(&self.totals_of(state, block, lane));
-                    sum.add(&self.stored_at_points(state, block, lane, &points));
-                    sum.in_faces += in_faces.0[lane];
-                }
-                sum
-            })
-            .collect()
+    /// Totals of no cell.
+    fn no_totals(&self, state: &State) -> Totals {
+        let known = state.has_displacement().then_some(0.0);
+        let dissipated = (!self.histories.is_empty()).then_some(0.0);
+        Totals { angular_momentum: known, max_drift: known, dissipated, ..Totals::EMPTY }
     }
 
-    fn totals_of(&self, state: &State, block: usize, lane: usize) -> Totals {
-        let (n, law) = (self.operators.nodes(), &self.laws[self.operators.blocks.material[block]]);
-        let u = state.of_block(block, n);
-        let memory = law.has_memory();
-        let mut sum = Totals::empty(state);
-        let (mut drift, mut area) = (0.0, 0.0);
-        for (a, mass) in self.operators.geometry.masses(&self.operators.line, block, lane).enumerate() {
-            let [f11, f12, f21, f22, p1, p2]: [f64; UNKNOWNS] = std::array::from_fn(|k| u[k * n + a].0[lane]);
-            let f = [f11, f12, f21, f22];
-            sum.add(&Totals {
-                kinetic: mass * (p1 * p1 + p2 * p2) / (2.0 * law.density()),
-                strain: if memory { 0.0 } else { mass * law.energy(f) },
-                in_faces: 0.0,
-                dissipated: sum.dissipated.map(|_| 0.0),
-                momentum: [mass * p1, mass * p2],
-                angular_momentum: self.position(state, block, lane, a).map(|x| mass * (x[0] * p2 - x[1] * p1)),
-                deformation: f.map(|x| mass * x),
-                min_j: tensor::det(f),
-                max_curl: self.curl(u, block, lane, a),
-                max_drift: sum.max_drift,
-            });
-            area += mass;
-            if state.has_displacement() {
-                let [one, two] =
-                    [0, 1].map(|axis| UNKNOWNS + axis).map(|component| self.gradient(u, block, lane, a, component));
-                drift += mass
-                    * [one[0] - f11 + 1.0, one[1] - f12, two[0] - f21, two[1] - f22 + 1.0]
-                        .map(|d| d * d)
-                        .iter()
-                        .sum::<f64>();
-            }
-        }
-        sum.max_drift = sum.max_drift.map(|_| (drift / area).sqrt());
-        sum
+    /// Totals of some blocks, one after the other.
+    fn totals_of_blocks(&self, state: &State, blocks: Range<usize>) -> Vec<Totals> {
+        let none = self.no_totals(state);
+        let of_block = |scratch: &mut Scratch, block: usize| {
+            let (cells, mut sum) = (self.totals_of_cells(state, block, scratch), none);
+            (0..self.operators.blocks.count[block]).for_each(|lane| sum.add(&cells.lane(lane, &none)));
+            sum
+        };
+        blocks.into_par_iter().map_init(|| Scratch::for_energy(self, state), of_block).collect()
     }
+}
 
-    /// F at the points of a block whose law has memory, [point][4]; empty for an elastic law.
-    fn deformation_at_points(&self, state: &State, block: usize) -> Vec<F8> {
-        let count = self.histories.weights(block).len();
-        let (n, m) = (self.operators.nodes(), self.operators.line.m);
-        let u = &state.of_block(block, n)[..DEFORMATION * n];
-        let mut points = vec![F8::ZERO; DEFORMATION * count];
-        match self.operators.points.as_ref().map(|points| (&points.pool, points.pool.share[block])) {
-            _ if count == 0 => {}
-            None => super::dense::interleave::<DEFORMATION>(u, n, &mut points),
-            Some((pool, Share::Shared(k))) => self.to_points(&pool.shared[k], u, m, &mut points),
-            Some((pool, Share::Own(k))) => self.to_points(&pool.own[k], u, m, &mut points),
-        }
-        points
-    }
-
-    fn to_points<C: Coefficient>(&self, matrices: &PointMatrices<C>, fields: &[F8], m: usize, points: &mut [F8]) {
-        let (mut nodes, mut between) = (fields.to_vec(), vec![F8::ZERO; factors(m, matrices.points(), DEFORMATION)]);
-        let (nodes, between) = (&mut nodes[..], &mut between[..]);
-        self.kernel.run(FieldsToPoints::<C, DEFORMATION> { matrices, fields, nodes, between, points });
-    }
-
-    /// What a law with memory stores and has dissipated in a lane, from F at the points. A point is where the last step has
-    /// left it, so that the law returns nothing once more.
-    fn stored_at_points(&self, state: &State, block: usize, lane: usize, points: &[F8]) -> Totals {
-        let law = &self.laws[self.operators.blocks.material[block]];
-        let mut sum = Totals::empty(state);
-        let at_points = points.as_chunks::<DEFORMATION>().0.iter().zip(self.histories.weights(block));
-        for (p, (f, weight)) in at_points.enumerate() {
-            let response = law.response(f.map(|f| f.0[lane]), &self.internal_at(state, block, lane, p));
-            sum.strain += weight.0[lane] * response.energy;
-            sum.dissipated = sum.dissipated.map(|dissipated| dissipated + weight.0[lane] * response.dissipated);
-        }
-        sum
-    }
-
-    /// x = X + u of node a, where the displacement is known.
-    fn position(&self, state: &State, block: usize, lane: usize, a: usize) -> Option<[f64; 2]> {
-        let (operators, n) = (&self.operators, self.operators.nodes());
-        state.has_displacement().then(|| {
-            let x = map::position(&operators.geometry.map_of(block, lane), operators.line.basis.node_2d(a));
-            let u = &state.of_block(block, n)[UNKNOWNS * n + a..];
-            [x[0] + u[0].0[lane], x[1] + u[n].0[lane]]
-        })
-    }
-
-    /// Larger of the two rows' |dF_i2/dX_1 - dF_i1/dX_2| at node a.
-    fn curl(&self, u: &[F8], block: usize, lane: usize, a: usize) -> f64 {
-        let of = |component: usize| self.gradient(u, block, lane, a, component);
-        (of(1)[0] - of(0)[1]).abs().max((of(3)[0] - of(2)[1]).abs())
-    }
-
-    /// The gradient of a component of a block at node a.
-    pub(super) fn gradient(&self, u: &[F8], block: usize, lane: usize, a: usize, component: usize) -> [f64; 2] {
-        let (line, n) = (&self.operators.line, self.operators.nodes());
-        let (m, i, j) = (line.m, a / line.m, a % line.m);
-        let [one, two] = self.operators.geometry.of(block).at_node_of(line, lane, i, j);
-        let at = |node: usize| u[component * n + node].0[lane];
-        let along1: f64 = (0..m).map(|k| line.slope[i * m + k] * at(k * m + j)).sum();
-        let along2: f64 = (0..m).map(|k| line.slope[j * m + k] * at(i * m + k)).sum();
-        [0, 1].map(|axis| (along1 * one[axis] + along2 * two[axis]) / determinant(one, two))
+impl Work {
+    /// [`Scheme::totals`] of a state of which each rank may have its part. All ranks call it.
+    pub fn totals(&mut self, scheme: &Scheme, state: &State) -> Totals {
+        let Some(ranks) = self.tiles.ranks.as_deref_mut() else { return scheme.totals(state) };
+        let Sum { sums, rest } = Sum::of(scheme.no_totals(state), &scheme.totals_of_blocks(state, ranks.own()));
+        let sums = ranks.sum(sums);
+        let [below, max_curl, drift] = ranks.most([-rest.min_j, rest.max_curl, rest.max_drift.unwrap_or(0.0)]);
+        Totals { min_j: -below, max_curl, max_drift: rest.max_drift.map(|_| drift), ..rest }.with_sums(sums)
     }
 }

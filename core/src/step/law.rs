@@ -52,8 +52,8 @@ pub(super) trait BlockLaw: PointLaw {
     fn speeds_of_traces(&self, kernel: Kernel, work: Speeds) -> bool;
     /// The survey.
     fn examine(&self, kernel: Kernel, work: Examine);
-    /// The stored and dissipated energy.
-    fn stored_energy(&self, kernel: Kernel, work: StoredEnergy) -> F8;
+    /// The kinetic, stored and dissipated energy.
+    fn stored_energy(&self, kernel: Kernel, work: StoredEnergy) -> [F8; 3];
     /// The power of a change of F.
     fn power(&self, kernel: Kernel, work: Power) -> F8;
     /// What it costs at a point.
@@ -81,7 +81,7 @@ impl<M: Material> BlockLaw for M {
         kernel.run(WithLaw(*self, work));
     }
 
-    fn stored_energy(&self, kernel: Kernel, work: StoredEnergy) -> F8 {
+    fn stored_energy(&self, kernel: Kernel, work: StoredEnergy) -> [F8; 3] {
         kernel.run(WithLaw(*self, work))
     }
 

@@ -15,6 +15,7 @@ mod begin;
 mod block;
 mod block_work;
 mod block_energy;
+mod block_totals;
 mod boundary_memory;
 pub mod cfl;
 mod compiled;
@@ -143,20 +144,39 @@ pub(crate) struct Scratch {
     pub phases: phase::Ticks,
 }
 
-impl Work {
-    /// Memory for steps of `scheme` on states like `state`, for the current number of threads.
-    pub fn new(scheme: &Scheme, state: &State) -> Self {
+impl Scratch {
+    /// For the blocks of `scheme` and states like `state`, without a clock.
+    fn new(scheme: &Scheme, state: &State) -> Self {
         let operators = &scheme.operators;
         let points =
             operators.points.as_ref().map_or(0, |p| p.first.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0));
         let creep = if state.creep.is_empty() { 0 } else { scheme.creep_of_block() };
         let added = predictor::Added { sources: !scheme.sources.is_empty(), springs: creep > 0 };
+        Self {
+            points: predictor::Arrays::new(points, operators.line.m, &scheme.method, added),
+            nodes: volume::Arrays::new(operators.line.m, state.components, creep),
+            phases: phase::Ticks::default(),
+        }
+    }
+
+    /// For what a state of `scheme` stores.
+    fn for_energy(scheme: &Scheme, state: &State) -> Self {
+        match scheme.histories.is_empty() {
+            true => {
+                Self { nodes: volume::Arrays::new(scheme.operators.line.m, state.components, 0), ..Self::default() }
+            }
+            false => Self::new(scheme, state),
+        }
+    }
+}
+
+impl Work {
+    /// Memory for steps of `scheme` on states like `state`, for the current number of threads.
+    pub fn new(scheme: &Scheme, state: &State) -> Self {
+        let operators = &scheme.operators;
         let scratch = || {
-            Mutex::new(Scratch {
-                points: predictor::Arrays::new(points, operators.line.m, &scheme.method, added),
-                nodes: volume::Arrays::new(operators.line.m, state.components, creep),
-                phases: phase::Ticks::of(2 * operators.blocks.len() * scheme.stages()),
-            })
+            let phases = phase::Ticks::of(2 * operators.blocks.len() * scheme.stages());
+            Mutex::new(Scratch { phases, ..Scratch::new(scheme, state) })
         };
         let tiles = tile_memory::Tiles::new(scheme, state.components * operators.nodes());
         Self {

@@ -229,6 +229,17 @@ impl Ranks {
         sums.map(|sum| sum.value())
     }
 
+    /// The largest that a rank has of each number.
+    pub fn most<const N: usize>(&mut self, own: [f64; N]) -> [f64; N] {
+        let (rank, ranks) = (self.exchange.rank(), self.exchange.ranks());
+        self.all.clear();
+        self.all.resize(ranks * N, 0.0);
+        self.all[rank * N..][..N].copy_from_slice(&own);
+        self.exchange.gather(&mut self.all, &(0..=ranks).map(|rank| rank * N).collect::<Vec<_>>());
+        let most = |most: [f64; N], of: &[f64; N]| std::array::from_fn(|k| most[k].max(of[k]));
+        self.all.as_chunks::<N>().0.iter().fold(own, most)
+    }
+
     /// Gives all ranks what the sides of segments have received: each side on the rank of its cell, 0 elsewhere.
     pub fn add_up(&mut self, received: &mut [[ReceivedBySide; 2]]) {
         let (rank, count) = (self.exchange.rank(), 6 * received.len());

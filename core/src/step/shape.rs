@@ -3,6 +3,7 @@
 use super::Scheme;
 use crate::lane::F8;
 use crate::mesh::map;
+use crate::operators::determinant;
 use crate::state::UNKNOWNS;
 use crate::tensor::{AXES, dot};
 
@@ -31,5 +32,15 @@ impl Scheme {
                 value.0[lane] += dot(missing, [0, 1].map(|axis| place(a)[axis] - middle[axis]));
             }
         }
+    }
+    /// The gradient of a component of a block at node a.
+    fn gradient(&self, u: &[F8], block: usize, lane: usize, a: usize, component: usize) -> [f64; 2] {
+        let (line, n) = (&self.operators.line, self.operators.nodes());
+        let (m, i, j) = (line.m, a / line.m, a % line.m);
+        let [one, two] = self.operators.geometry.of(block).at_node_of(line, lane, i, j);
+        let at = |node: usize| u[component * n + node].0[lane];
+        let along1: f64 = (0..m).map(|k| line.slope[i * m + k] * at(k * m + j)).sum();
+        let along2: f64 = (0..m).map(|k| line.slope[j * m + k] * at(i * m + k)).sum();
+        [0, 1].map(|axis| (along1 * one[axis] + along2 * two[axis]) / determinant(one, two))
     }
 }

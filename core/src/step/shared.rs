@@ -2,7 +2,7 @@
 
 use super::obstacles::Obstacles;
 use super::tile_memory::Tiles;
-use super::{Motion, Scheme, Work};
+use super::{Motion, Scheme, Totals, Work};
 use crate::error::Result;
 use crate::state::State;
 
@@ -151,6 +151,11 @@ impl Motion {
             *shown = See { to: wanted, whole: ranks.whole_of(scheme, state, on_all) };
             ranks.gather(&mut survey.speed, |block| block);
         }
+    }
+
+    /// [`Scheme::totals`] of the state, to which each rank adds its own blocks. All ranks call it.
+    pub fn totals(&mut self, scheme: &Scheme) -> Totals {
+        self.work.totals(scheme, &self.state)
     }
 
     /// The whole state after [`Motion::show`], where it is shown, or where this rank has it; else the part of this rank.
