@@ -132,7 +132,7 @@ pub use limiter::{Beside, Cell, CellLimiter, Limiter, Modes, MomentLimiter, Sens
 pub use material::{
     J2, LinearElastic, Material, NeoHookean, Numbers, Past, PointLaw, Rank, Response, StVenantKirchhoff, Variable,
 };
-pub use observe::{Field, NewGrid, Observer, Point, Schedule, Solution, View};
+pub use observe::{Field, NewGrid, Observer, Point, Schedule, Sight, Solution, View};
 pub use riemann::{Acoustic, AcousticCurl, Dual, Impedance, Looks, Medium, Riemann, Rusanov, Trace, star};
 pub use source::{BodyForce, Damping, PressurePulse, Source, Varies};
 pub use step::{Balance, Corrected, Correction, Flux, Law, Made, Notes, Rescue};

@@ -1,6 +1,6 @@
 //! `ledger.csv`: energy, momentum, smallest J and largest speed over time, and the balance of energy.
 
-use super::{Observer, Schedule, View};
+use super::{Observer, Schedule, Sight, View};
 use crate::error::Error;
 use crate::io::csv::Table;
 use crate::step::{Balance, Totals};
@@ -124,12 +124,16 @@ impl Observer for Ledger {
         self.contents.balance
     }
 
+    fn looks_at(&self) -> Sight {
+        Sight::Totals
+    }
+
     fn schedule(&mut self) -> &mut Schedule {
         &mut self.schedule
     }
 
     fn observe(&mut self, view: &View) -> Result<(), Error> {
-        let totals = view.scheme.totals(view.state);
+        let totals = view.totals();
         let mut row = vec![
             view.state.step as f64,
             view.state.time,

@@ -23,7 +23,7 @@ use crate::io::snapshot::GridFiles;
 use crate::lane::F8;
 use crate::mesh::Mesh;
 use crate::state::State;
-use crate::step::{Balance, EnergyMade, Scheme, Survey};
+use crate::step::{Balance, EnergyMade, Scheme, Survey, Totals};
 use crate::words::{Saved, Words};
 
 /// What an observer sees: the state at the end of a step.
@@ -35,6 +35,8 @@ pub struct View<'a> {
     pub scheme: &'a Scheme,
     /// The state.
     pub state: &'a State,
+    /// Its totals, where ranks have added them up; see [`View::totals`].
+    pub totals: Option<Totals>,
     /// Its wave speeds and min J.
     pub survey: &'a Survey,
     /// The balance of energy since the start; `None` if no observer needs it.
@@ -43,6 +45,24 @@ pub struct View<'a> {
     pub treated: &'a [F8],
     /// The step that follows, s; 0 at the end of the run.
     pub dt: f64,
+}
+
+/// What an observer looks at of a state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Sight {
+    /// Its time, step and survey.
+    Survey,
+    /// And its totals: ranks add them up.
+    Totals,
+    /// And its unknowns: the first rank fetches them.
+    Unknowns,
+}
+
+impl View<'_> {
+    /// The totals of the state.
+    pub fn totals(&self) -> Totals {
+        self.totals.unwrap_or_else(|| self.scheme.totals(self.state))
+    }
 }
 
 /// The grid on which the run continues.
@@ -68,10 +88,9 @@ pub trait Observer {
         false
     }
 
-    /// Whether it looks at more of a state than its time, step and survey. Ranks that share a run fetch a state for it, and so each of
-    /// them has such observers at the same times.
-    fn looks_at_unknowns(&self) -> bool {
-        true
+    /// What it looks at of a state. Ranks that share a run find it together, and so each of them has such observers at the same times.
+    fn looks_at(&self) -> Sight {
+        Sight::Unknowns
     }
 
     /// The times at which it observes.

@@ -4,7 +4,7 @@ use super::{Body, Problem};
 use crate::error::{Error, Result};
 use crate::exchange::{self, first_that_differs};
 use crate::lane::Kernel;
-use crate::observe::{NewGrid, Observer, Schedule, View};
+use crate::observe::{NewGrid, Observer, Schedule, Sight, View};
 use crate::operators::Operators;
 use crate::run::{Folder, Report};
 use crate::scene::Scene;
@@ -112,8 +112,8 @@ impl Observer for Silent<'_> {
         self.0.wants_forces()
     }
 
-    fn looks_at_unknowns(&self) -> bool {
-        self.0.looks_at_unknowns()
+    fn looks_at(&self) -> Sight {
+        self.0.looks_at()
     }
 
     fn schedule(&mut self) -> &mut Schedule {

@@ -26,7 +26,7 @@ pub use whole::Whole;
 use crate::built;
 use crate::error::Error;
 use crate::mesh::Mesh;
-use crate::observe::{Observer, View};
+use crate::observe::{Observer, Sight, View};
 use crate::state::State;
 use crate::step::{Balance, EnergyMade, Motion, Scheme, Survey};
 use crate::words::{Saved, Words};
@@ -232,12 +232,12 @@ impl Run<'_, '_> {
             let dt = step_size(stop - time, stable);
             let next = end_of_step(time, dt, stop);
             check_advance([time, next, self.settings.end], [stable, dt], h)?;
-            let observes = motion.is_shared() && self.observes(&motion.state, dt);
-            if motion.is_shared() && (pause.looks() || observes) {
+            let looks = self.look_at(&motion.state, dt).filter(|_| motion.is_shared());
+            if motion.is_shared() && (pause.looks() || looks == Some(Sight::Unknowns)) {
                 motion.show(self.scheme, pause.looks());
             }
             let observed = self.observe(motion, report, dt);
-            if observes { motion.agree(observed) } else { observed }?;
+            if looks > Some(Sight::Survey) { motion.agree(observed) } else { observed }?;
             if stops {
                 return Err(Stop::Interrupted);
             }
@@ -304,32 +304,36 @@ impl Run<'_, '_> {
         self.observers.iter_mut().filter_map(|o| o.schedule().stop(time)).fold(self.settings.end, f64::min)
     }
 
-    /// Whether somebody waits for the unknowns of the state.
-    fn observes(&mut self, state: &State, dt: f64) -> bool {
+    /// The most that somebody who waits for the state looks at.
+    fn look_at(&mut self, state: &State, dt: f64) -> Option<Sight> {
         let due = |observer: &mut Box<dyn Observer + '_>| {
-            observer.looks_at_unknowns() && observer.schedule().clone().due(state.step, state.time, dt)
+            observer.schedule().clone().due(state.step, state.time, dt).then(|| observer.looks_at())
         };
-        self.observers.iter_mut().any(due)
+        self.observers.iter_mut().filter_map(due).max()
     }
 
     /// Shows the state to those who wait for it.
-    fn observe(&mut self, motion: &Motion, report: &mut Report, dt: f64) -> Result<(), Error> {
-        let view = view(self.mesh, self.scheme, motion, report.balance.as_ref(), dt);
+    fn observe(&mut self, motion: &mut Motion, report: &mut Report, dt: f64) -> Result<(), Error> {
         report.observed.resize(self.observers.len(), (0.0, 0));
+        let mut failed = Ok(());
         for (observer, (seconds, count)) in self.observers.iter_mut().zip(&mut report.observed) {
-            if observer.schedule().due(view.state.step, view.state.time, dt) {
+            if observer.schedule().due(motion.state.step, motion.state.time, dt) {
                 let clock = ProcessTime::now();
-                observer.observe(&view)?;
+                // All ranks add up, those too on which an observer has failed.
+                let together = motion.is_shared() && observer.looks_at() == Sight::Totals;
+                let totals = together.then(|| motion.totals(self.scheme));
+                let view = View { totals, ..view(self.mesh, self.scheme, motion, report.balance.as_ref(), dt) };
+                failed = failed.and_then(|()| observer.observe(&view));
                 *seconds += clock.elapsed().as_secs_f64();
                 *count += 1;
             }
         }
-        Ok(())
+        failed
     }
 }
 
 /// What observers and pauses see before a step of `dt`.
 fn view<'a>(mesh: &'a Mesh, scheme: &'a Scheme, motion: &'a Motion, balance: Option<&'a Balance>, dt: f64) -> View<'a> {
     let treated = motion.work.treated();
-    View { mesh, scheme, state: motion.seen(), survey: &motion.survey, balance, treated, dt }
+    View { mesh, scheme, state: motion.seen(), totals: None, survey: &motion.survey, balance, treated, dt }
 }

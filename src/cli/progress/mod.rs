@@ -5,7 +5,7 @@ mod now;
 
 use super::print::{say, warn};
 use crate::error::Result;
-use crate::observe::{Observer, Schedule, View, When};
+use crate::observe::{Observer, Schedule, Sight, View, When};
 use crate::step::EnergyMade;
 use display::Display;
 use now::Now;
@@ -37,8 +37,8 @@ impl Observer for Progress {
         self.display.above(|| say(text));
     }
 
-    fn looks_at_unknowns(&self) -> bool {
-        false
+    fn looks_at(&self) -> Sight {
+        Sight::Survey
     }
 
     fn schedule(&mut self) -> &mut Schedule {
