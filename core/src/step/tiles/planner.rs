@@ -225,13 +225,14 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// Which blocks begin in a phase.
+/// Which blocks of each tile begin in a phase: the early ones or the others, all of them or one part.
 #[derive(Clone, Copy)]
 struct Begins {
-    /// Those of the early ones, or of the others,
+    /// Whether it is the early ones.
     early: bool,
-    /// in one of so many parts of a tile.
+    /// The number of the part, from 0.
     part: usize,
+    /// How many parts there are.
     parts: usize,
 }
 
