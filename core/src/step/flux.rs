@@ -115,6 +115,7 @@ impl<'a> SidesOfFaces<'a> {
 
 impl Block<'_> {
     /// Lifted numbers of all faces into `nodes.lift`; the energy that they pass into `meter`.
+    #[inline(always)]
     pub fn lifted_fluxes(&self, traces: &Traces, meetings: Option<&Meetings>, nodes: &mut Arrays, mut meter: Meter) {
         let scheme = self.scheme;
         let (blocks, m) = (&scheme.operators.blocks, scheme.operators.line.m);
@@ -147,17 +148,21 @@ impl Block<'_> {
         let met = meetings.filter(|_| built::CONTACT).map(|meetings| Met { meetings, traces });
         let sides = SidesOfFaces { own, other: &other, met };
         if plan.iter().any(|face| face.has_boundary_or_interface) {
-            self.single_faces(&sides, &mut nodes.lift, &mut nodes.held, springs, &mut meter);
+            let (lift, held) = (&mut nodes.lift[..], &mut nodes.held[..]);
+            match built::FORCES && meter.forces.is_some() {
+                true => self.single_faces::<true>(&sides, lift, held, springs, &mut meter),
+                false => self.single_faces::<false>(&sides, lift, held, springs, &mut meter),
+            }
         }
         if built::BALANCE && metered {
             self.balance_of_faces(&sides, pull, &mut meter);
         }
     }
 
-    /// Lifted numbers of the faces at a boundary or at another material. By itself, as [`Block::balance_of_faces`], so that blocks inside the
-    /// body have no instruction of it.
+    /// Lifted numbers of the faces at a boundary or at another material; with FORCES, the forces there are booked. By itself, as
+    /// [`Block::balance_of_faces`], so that blocks inside the body have no instruction of it, nor those at a boundary one of forces.
     #[inline(never)]
-    fn single_faces(
+    fn single_faces<const FORCES: bool>(
         &self,
         sides: &SidesOfFaces,
         lift: &mut [F8],
@@ -166,34 +171,16 @@ impl Block<'_> {
         meter: &mut Meter,
     ) {
         let (plan, m) = (&self.scheme.operators.blocks.plan[self.number], self.scheme.operators.line.m);
-        let with_forces = built::FORCES && meter.forces.is_some();
         for face in (0..FACES).filter(|face| plan[*face].has_boundary_or_interface) {
             let held = &mut held[2 * m * face..2 * m * (face + 1)];
             let lift = &mut lift[UNKNOWNS * m * face..UNKNOWNS * m * (face + 1)];
             let start = meter.phases.start();
-            let (sides, springs) = (sides.of(face), springs.as_mut());
-            match with_forces {
-                true => self.single_fluxes_with_forces(sides, lift, held, springs, meter),
-                false => self.single_fluxes(sides, lift, held, springs, meter),
+            let before = if FORCES { meter.external.as_ref().map(|external| external.boundary) } else { None };
+            self.single_fluxes(sides.of(face), lift, held, springs.as_mut(), meter);
+            if let (true, Some(before)) = (FORCES, before) {
+                self.forces_at_face(face, lift, before, meter);
             }
             meter.phases.book_part(Part::Conditions, start);
-        }
-    }
-
-    /// [`Block::single_fluxes`], and the forces at the face booked.
-    #[inline(never)]
-    fn single_fluxes_with_forces(
-        &self,
-        sides: Sides,
-        lift: &mut [F8],
-        held: &mut [F8],
-        springs: Option<&mut Springs>,
-        meter: &mut Meter,
-    ) {
-        let before = meter.external.as_ref().map(|external| external.boundary);
-        self.single_fluxes(sides, lift, held, springs, meter);
-        if let Some(before) = before {
-            self.forces_at_face(sides.face, lift, before, meter);
         }
     }
 

@@ -48,6 +48,9 @@ impl<B: Fn(Begin), F: Fn(Finish)> Pass<'_, B, F> {
         }
     }
 
+    /// Begins a block in a stage. Never inlined, and what finishes it always is: else the compiler decides it anew where an effect is left
+    /// out, and programs with and without it have other instructions in blocks that have none of it.
+    #[inline(never)]
     fn begin(&mut self, event: &Event) {
         let Self { step, tile, shown, out, scratch } = self;
         let Step { scheme, stages, start: state, survey, slots, outside, far, .. } = *step;
