@@ -6,6 +6,7 @@ usage: tools/ranks.py FOLDER [WORD]    the folder of both programs; only what ha
 tools/ranks.sh builds the programs and calls it.
 """
 
+import json
 import os
 import signal
 import subprocess
@@ -187,10 +188,25 @@ def of_input(work):
     Job(command, work).ends("another command line", 2, 20, "rank 1 has another command line")
 
 
+def of_lost_cells(work):
+    """Many cells of a uniform state are lost in one step: the same one is named, however the blocks are divided."""
+    scene = ROOT / "meshes" / "hard" / "svk_collapse.toml"
+    losses = []
+    for ranks in (1, 2, 3):
+        folder = work / f"collapse_{ranks}"
+        command = [ALONE] if ranks == 1 else of_ranks(ranks, SHARED)
+        run = [*command, "run", scene, "--out", folder, "--threads", "1", *sets(["quantity=[]"])]
+        done = subprocess.run([str(word) for word in run], capture_output=True, text=True)
+        check(done.returncode == 3, "lost cells", done.stderr)
+        losses.append(json.loads((folder / "summary.json").read_text())["loss"])
+    check(all(loss == losses[0] for loss in losses), "lost cells: where", losses)
+
+
 def of_runs(work):
     fast = ['initial.velocity=["-8000","0"]', ELASTIC, NO_REGRID]
     Job(of_ranks(3, SHARED, "run", SMALL, "--out", "lost", *sets(fast)), work).ends("a lost cell", 3, 20, "step ")
     check((work / "lost" / "summary.json").exists(), "a lost cell: summary")
+    of_lost_cells(work)
 
     job, folder = long_job(work, 3)
     full = (folder / "ledger.csv").stat().st_size

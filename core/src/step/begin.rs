@@ -190,7 +190,12 @@ impl Begin<'_> {
         let worst = (block.stage.number == 0).then_some((&mut *self.worst, block.cells()));
         let speeds = volume::Speeds { metric, width, looks, traces: self.traces, worst };
         if block.law().block().speeds_of_traces(kernel, speeds) {
-            self.worst.lost_at(FacePoint::find(block.number, block.cells(), self.traces, width));
+            self.worst.lost_at(FacePoint::find(
+                block.scheme.first_number(block.number),
+                block.cells(),
+                self.traces,
+                width,
+            ));
         }
     }
 }

@@ -68,7 +68,7 @@ impl Scheme {
 
     /// The loss at a face point.
     pub(super) fn loss_at_face(&self, face: &FacePoint) -> Loss {
-        let cell = self.operators.blocks.cells[face.block][face.lane];
+        let cell = self.operators.blocks.cells[self.of_first_number(face.block)][face.lane];
         let kind = if face.j.is_finite() { LossKind::Inverted(face.j) } else { LossKind::NotFinite };
         Loss { cell, site: face.site(), kind }
     }

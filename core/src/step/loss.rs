@@ -62,7 +62,7 @@ impl std::fmt::Display for Site {
 /// A face point in a block whose J is not above 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FacePoint {
-    /// The block.
+    /// The block, by the number that it had before any partition.
     pub block: usize,
     /// The lane.
     pub lane: usize,

@@ -34,7 +34,23 @@ impl Partition {
     }
 }
 
+/// The number that a block had before the blocks were ordered by a partition: what is first by it is the same for any ranks.
+pub(super) fn first_number(partition: Option<&Partition>, block: usize) -> usize {
+    partition.map_or(block, |partition| partition.order[block])
+}
+
 impl Scheme {
+    /// [`first_number`] of a block.
+    pub(super) fn first_number(&self, block: usize) -> usize {
+        first_number(self.partition.as_ref(), block)
+    }
+
+    /// The block that had this number before any partition.
+    pub(super) fn of_first_number(&self, number: usize) -> usize {
+        let Some(Partition { order, .. }) = &self.partition else { return number };
+        order.iter().position(|block| *block == number).unwrap_or(number)
+    }
+
     /// How the engine divides the blocks; `None` where the scheme runs alone, where the engine leaves the blocks in their order, and where
     /// a rank would have fewer blocks than threads.
     pub fn partition(&self) -> Option<Partition> {

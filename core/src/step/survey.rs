@@ -108,7 +108,7 @@ impl Scheme {
     /// The smallest J at the face points of the real cells of a block.
     fn smallest_j_at_faces(&self, state: &State, block: usize) -> FacePoint {
         let lanes = 0..self.operators.blocks.count[block];
-        let none = FacePoint { block, lane: 0, at: [0; 2], j: f64::INFINITY };
+        let none = FacePoint { block: self.first_number(block), lane: 0, at: [0; 2], j: f64::INFINITY };
         lanes.map(|lane| self.faces_of_lane(state, block, lane)).fold(none, |a, b| if b.j < a.j { b } else { a })
     }
 
@@ -116,7 +116,7 @@ impl Scheme {
     fn faces_of_lane(&self, state: &State, block: usize, lane: usize) -> FacePoint {
         let (line, n) = (&self.operators.line, self.operators.nodes());
         let (m, u) = (line.m, &state.of_block(block, n)[..DEFORMATION * n]);
-        let mut worst = FacePoint { block, lane, at: [0; 2], j: f64::INFINITY };
+        let mut worst = FacePoint { block: self.first_number(block), lane, at: [0; 2], j: f64::INFINITY };
         for face in 0..FACES {
             let ends = &line.ends[face % 2];
             for point in 0..m {
@@ -141,7 +141,7 @@ impl Scheme {
             // What the step began with comes before what it made of it.
             (Some(face), _) => Err(self.loss_at_face(&face)),
             (None, usize::MAX) => Ok(()),
-            (None, block) => Err(self.find_loss(state, block)),
+            (None, number) => Err(self.find_loss(state, self.of_first_number(number))),
         }
     }
 }
@@ -196,7 +196,7 @@ impl LawWork for Examine<'_> {
         }
         let found = examine::<L, _>(law, &points, internal, at_nodes, others);
         speed.fastest = found.speed;
-        worst.see::<L>(found, block, scheme.operators.blocks.count[block]);
+        worst.see::<L>(found, block, scheme.operators.blocks.count[block], scheme.partition.as_ref());
         scratch.phases.book(Phase::Survey, &mut clock);
     }
 }

@@ -1,12 +1,13 @@
 //! The worst of the blocks that a step or a survey has seen.
 
 use super::loss::FacePoint;
+use super::partition::{Partition, first_number};
 use crate::lane::{F8, LANES, Lanes};
 
 /// The worst of some blocks. Minimum and maximum do not depend on the order: same bits for any number of threads.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Worst {
-    /// The first block that lost stability; `usize::MAX` where all are stable.
+    /// The first block that lost stability, by [`first_number`]; `usize::MAX` where all are stable.
     pub lost: usize,
     /// The first block that began the step with J <= 0 at a face.
     pub face: Option<FacePoint>,
@@ -20,9 +21,9 @@ impl Worst {
     /// That of no block.
     pub const NONE: Self = Self { lost: usize::MAX, face: None, fastest: F8::ZERO, min_j: F8::splat(f64::INFINITY) };
 
-    /// With what was found in a block with so many real cells.
+    /// With what was found in a block with so many real cells; `partition` orders the blocks.
     #[inline(always)]
-    pub fn see<L: Lanes>(&mut self, mut found: Found, block: usize, cells: usize) {
+    pub fn see<L: Lanes>(&mut self, mut found: Found, block: usize, cells: usize, partition: Option<&Partition>) {
         for lane in cells..LANES {
             (found.speed.0[lane], found.min_j.0[lane], found.lost.0[lane]) = (0.0, f64::INFINITY, 0.0);
         }
@@ -33,7 +34,7 @@ impl Worst {
             bits |= lost.to_bits();
         }
         if bits != 0 {
-            self.lost = self.lost.min(block);
+            self.lost = self.lost.min(first_number(partition, block));
         }
     }
 
