@@ -35,7 +35,7 @@ build: setup
 demo: build
 	@tools/demo.sh
 
-test: setup
+test:
 	@tools/test.sh
 
 study: build
